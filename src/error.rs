@@ -1,0 +1,123 @@
+//! What a host, a file or a driver can cause.
+
+use std::path::PathBuf;
+
+use glam::UVec2;
+
+/// The library's result.
+pub type Result<T, E = Error> = std::result::Result<T, E>;
+
+/// Everything that can go wrong through no fault of this library.
+///
+/// A message says what happened and where; a line that starts with `help:` says what to do.
+/// Our own mistakes are panics, not errors.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// A file that can't be read, written or taken as what it claims to be.
+    #[error("{}: {problem}\nhelp: {remedy}", path.display())]
+    File {
+        /// The file, as the caller named it.
+        path: PathBuf,
+        /// What is wrong with it, and where inside it.
+        problem: String,
+        /// What the caller can do about it.
+        remedy: String,
+    },
+
+    /// A setting outside its range.
+    #[error("{name} = {value} is not possible: {reason}")]
+    Setting {
+        /// The field's name, as in [`crate::settings`].
+        name: &'static str,
+        /// The value that was asked for.
+        value: String,
+        /// The range, and why it ends there.
+        reason: String,
+    },
+
+    /// The answer could be wrong by rounding or wrapping, and nobody allowed that.
+    #[error("the result would not be exact: {reason}\nhelp: {remedy}")]
+    Inexact {
+        /// Which number exceeds which limit.
+        reason: String,
+        /// Settings that give an exact answer.
+        remedy: String,
+    },
+
+    /// A map larger than the device's textures.
+    #[error("a map of {} x {} is larger than this device's textures, at most {limit} a side", size.x, size.y)]
+    TooLarge {
+        /// The size that was asked for.
+        size: UVec2,
+        /// GL_MAX_TEXTURE_SIZE.
+        limit: u32,
+    },
+
+    /// A texture or map that does not fit where it was given.
+    #[error("{what}: expected {expected}, got {got}")]
+    Mismatch {
+        /// Which input.
+        what: &'static str,
+        /// What it has to be; GL enums by name.
+        expected: String,
+        /// What it is; GL enums by name.
+        got: String,
+    },
+
+    /// The context is older than OpenGL 3.3 core.
+    #[error("this needs OpenGL 3.3 core, but the context is \"{version}\" on \"{renderer}\"")]
+    Version {
+        /// GL_VERSION.
+        version: String,
+        /// GL_RENDERER.
+        renderer: String,
+    },
+
+    /// A shader that the driver refused.
+    #[error("the driver refused the shader of pass \"{label}\":\n{log}\n{source_text}")]
+    Shader {
+        /// The pass's label.
+        label: String,
+        /// The driver's words.
+        log: String,
+        /// The source with line numbers and file names.
+        source_text: String,
+    },
+
+    /// A pass set or read a name that its program lacks.
+    #[error("pass \"{label}\" has no uniform \"{name}\"; it has: {known}")]
+    UnknownUniform {
+        /// The pass's label.
+        label: String,
+        /// The name that was set.
+        name: String,
+        /// The names that the program has.
+        known: String,
+    },
+
+    /// OpenGL reported an error.
+    #[error("OpenGL answered {code} to {what}")]
+    Gl {
+        /// The name of the GL enum.
+        code: String,
+        /// What was asked of it.
+        what: String,
+    },
+
+    /// No context could be made on any device that was tried.
+    #[error("{0}")]
+    NoContext(String),
+}
+
+impl Error {
+    /// A file error; see [`Error::File`].
+    #[cfg(feature = "files")]
+    pub(crate) fn file(
+        path: impl Into<PathBuf>,
+        problem: impl Into<String>,
+        remedy: impl Into<String>,
+    ) -> Self {
+        Self::File { path: path.into(), problem: problem.into(), remedy: remedy.into() }
+    }
+}
