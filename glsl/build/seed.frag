@@ -1,0 +1,10 @@
+// Level 0 of a structure: the density map in the structure's number type, 0 where the structure is larger.
+uniform ivec2 map_size;
+
+layout(location = 0) out SUM photons;
+
+void main()
+{
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    photons = all(lessThan(pixel, map_size)) ? photons_at(pixel) : SUM(0);
+}

@@ -1,0 +1,36 @@
+// Up one column of the pyramid until a texel holds enough (thesis 3.3.1, Figure 3.3).
+// The texel's block is not centred on the pixel: that is the fault which the thesis shows.
+uniform SUM_SAMPLER pyramid;
+uniform int top_level;
+uniform ivec2 map_size;
+uniform int max_radius;
+
+layout(location = 0) out uint radius;
+#ifdef LIMITED_MASK
+layout(location = 1) out uint limited;
+#endif
+
+void main()
+{
+    // Helper fragments of a quad that lie outside the map run along.
+    ivec2 pixel = min(ivec2(gl_FragCoord.xy), map_size - 1);
+    int level = 0;
+    int r = 0;
+    bool found = false;
+    while (!found && r < max_radius) {
+        // Level l stands for radius 2^(l - 1): half the side of its block.
+        ++level;
+        r = min(1 << (level - 1), max_radius);
+        ivec2 block = pixel >> level;
+        int side = 1 << level;
+        ivec2 lo = block * side;
+        uvec2 inside = uvec2(min(lo + side, map_size) - lo);
+        // Past the top the block only grows outside the map.
+        uint count = to_count(texelFetch(pyramid, block, min(level, top_level)).r);
+        found = enough(count, uint(side) * uint(side), inside.x * inside.y);
+    }
+    radius = uint(r);
+#ifdef LIMITED_MASK
+    limited = found ? 0u : 1u;
+#endif
+}

@@ -1,0 +1,83 @@
+// The smallest radius whose box holds enough photons (thesis 1.3, 3.5).
+// Follows a counter that defines: uint count_in_box(ivec2 lo, ivec2 hi), both corners included and inside the map
+// (BOX_UNCLIPPED: as they come, for the listing that clips by itself).
+uniform ivec2 map_size;
+uniform int max_radius;
+#ifdef ORDER_FORWARD
+// The radii that this pass tries; one pass tries all unless the renderer limits loops.
+uniform int first_radius;
+uniform int last_radius;
+#endif
+#ifdef CONTINUED
+// What the passes over smaller radii found, 0 where they found nothing.
+uniform usampler2D found_before;
+#endif
+
+layout(location = 0) out uint radius;
+#ifdef LIMITED_MASK
+layout(location = 1) out uint limited;
+#endif
+
+bool enough_within(ivec2 center, int r)
+{
+    ivec2 lo = max(center - r, ivec2(0));
+    ivec2 hi = min(center + r, map_size - 1);
+#ifdef BOX_UNCLIPPED
+    uint count = count_in_box(center - r, center + r);
+#else
+    uint count = count_in_box(lo, hi);
+#endif
+    uint side = uint(2 * r + 1);
+    uvec2 inside = uvec2(hi - lo + 1);
+    return enough(count, side * side, inside.x * inside.y);
+}
+
+void main()
+{
+    // Helper fragments of a quad that lie outside the map run along; off the map they could loop for ever.
+    ivec2 center = min(ivec2(gl_FragCoord.xy), map_size - 1);
+
+#ifdef ORDER_FORWARD
+    int r = first_radius;
+    bool found = false;
+#ifdef CONTINUED
+    uint before = texelFetch(found_before, center, 0).r;
+    if (before != 0u) {
+        r = int(before);
+        found = true;
+    }
+#endif
+    if (!found) {
+        found = enough_within(center, r);
+        while (!found && r < last_radius) {
+            found = enough_within(center, ++r);
+        }
+        if (!found && r < max_radius) {
+            r = 0;
+        }
+    }
+#else
+    // Everything below `r` is known to be too small, `last` is known to be enough or is MR.
+    int r = 1;
+    int last = max_radius;
+    bool found = false;
+    while (r < last) {
+        int middle = (r + last) / 2;
+        if (enough_within(center, middle)) {
+            last = middle;
+            found = true;
+        } else {
+            r = middle + 1;
+        }
+    }
+#ifdef LIMITED_MASK
+    // The search never asks MR itself unless MR is 1.
+    found = found || enough_within(center, r);
+#endif
+#endif
+
+    radius = uint(r);
+#ifdef LIMITED_MASK
+    limited = found ? 0u : 1u;
+#endif
+}

@@ -1,0 +1,142 @@
+//! When a result is exact: which sums fit which storage, decided before anything is computed.
+//!
+//! Three facts carry the rules (S counts the photons of a box, T is its area, I its area inside the map):
+//!
+//! 1. An unsigned table that wraps still gives the right S while the *box* holds less than 2^32, since the four
+//!    texels are added modulo 2^32; the total does not matter.
+//! 2. `min(count, n)` in place of each count changes no radius: a box with a pixel of n or more holds enough either
+//!    way, and in the others nothing is clamped. Then S <= n I, so T n < 2^32 is enough for any map at all.
+//! 3. f32 holds every whole number up to 2^24; a table in f32 is exact while its *total*, its largest entry, stays
+//!    there, and a pyramid or a brute-force sum while each box does.
+//!
+//! The scaled test S T >= n I needs products only where S < n, so they fit 32 bits while T n < 2^32; past that the
+//! shaders multiply in two words.
+
+use glam::UVec2;
+
+use crate::error::{Error, Result};
+use crate::image::Image;
+use crate::settings::{Exactness, Method, Search, Settings, Storage};
+
+/// Upper bounds for the sums in a density map; what is not known is [`u64::MAX`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CountBounds {
+    /// The sum of all counts.
+    pub total: u64,
+    /// The sum of any box of radius MR.
+    pub densest_box: u64,
+    /// The sum of any box of radius MR with each count clamped to n.
+    pub densest_clamped_box: u64,
+}
+
+impl CountBounds {
+    /// Nothing is known: only n and MR can prove exactness.
+    pub const UNKNOWN: Self = Self { total: u64::MAX, densest_box: u64::MAX, densest_clamped_box: u64::MAX };
+
+    /// At most `total` photons are in the map: a host knows how many it has drawn.
+    #[must_use]
+    pub fn total_at_most(total: u64) -> Self {
+        Self { total, densest_box: total, densest_clamped_box: total }
+    }
+
+    /// The bounds of `density` itself; boxes are looked at only where the total does not settle it.
+    #[must_use]
+    pub fn of(density: &Image<u32>, search: Search) -> Self {
+        let total = density.values().iter().map(|&count| u64::from(count)).sum();
+        if total <= U32_MAX {
+            return Self::total_at_most(total);
+        }
+        let densest = |counts: &Image<u32>| {
+            crate::reference::Table::new(counts).densest_box(search.max_radius)
+        };
+        Self {
+            total,
+            densest_box: densest(density),
+            densest_clamped_box: densest(&density.map(|count| count.min(search.min_photons))),
+        }
+    }
+}
+
+const U32_MAX: u64 = u32::MAX as u64;
+const F32_MAX: u64 = 1 << 24;
+
+/// How counts are taken in so that the sums stay right.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Plan {
+    /// Larger counts are taken as this many; n where clamping is what makes the sums fit.
+    pub count_limit: u32,
+    /// Whether every radius is proved equal to the definition (always so unless waived or the method approximates).
+    pub exact: bool,
+}
+
+/// Decides how the counts of a map of `size` are taken in.
+///
+/// # Errors
+/// [`Error::Inexact`] where [`Exactness::Required`] cannot be had.
+pub fn plan(settings: &Settings, size: UVec2, bounds: CountBounds) -> Result<Plan> {
+    let faultless = settings.faults == crate::settings::Faults::NONE;
+    let unclamped = Plan { count_limit: u32::MAX, exact: settings.method.is_exact() && faultless };
+    let inexact = |reason: String, remedy: &str| match settings.exactness {
+        Exactness::Required => Err(Error::Inexact { reason, remedy: remedy.to_owned() }),
+        Exactness::Waived => Ok(Plan { exact: false, ..unclamped }),
+    };
+    let search = settings.search;
+    match (settings.method, settings.storage) {
+        (Method::AveragedMipmap, _) => Ok(unclamped),
+        (_, Storage::U32) => {
+            let clamped_by_n = largest_area(settings, size) * u64::from(search.min_photons);
+            if bounds.densest_box.min(bounds.total) <= U32_MAX {
+                Ok(unclamped)
+            } else if clamped_by_n.min(bounds.densest_clamped_box) <= U32_MAX {
+                Ok(Plan { count_limit: search.min_photons, ..unclamped })
+            } else {
+                inexact(
+                    format!(
+                        "a box of radius {} may hold {} photons, and 32-bit sums end at {U32_MAX}",
+                        search.max_radius,
+                        known(bounds.densest_clamped_box)
+                    ),
+                    "lower n or MR, or scale the counts down",
+                )
+            }
+        }
+        (Method::SummedAreaTable, Storage::F32) if bounds.total > F32_MAX => inexact(
+            format!("a table in f32 is exact up to {F32_MAX} photons in all, and the map may hold {}", known(bounds.total)),
+            "keep the table in u32",
+        ),
+        (Method::BruteForce | Method::NaiveMipmap | Method::Pyramid, Storage::F32)
+            if bounds.densest_box > F32_MAX =>
+        {
+            inexact(
+                format!(
+                    "sums in f32 are exact up to {F32_MAX}, and a box of radius {} may hold {} photons",
+                    search.max_radius,
+                    known(bounds.densest_box)
+                ),
+                "keep the sums in u32",
+            )
+        }
+        (_, Storage::F32) => Ok(unclamped),
+    }
+}
+
+/// Whether the products of the scaled test need more than 32 bits.
+pub(crate) fn needs_wide_products(settings: &Settings) -> bool {
+    largest_area(settings, UVec2::MAX) * u64::from(settings.search.min_photons) > U32_MAX
+}
+
+/// The largest T that the search asks for, cut to the map where it is a sum's area that matters.
+fn largest_area(settings: &Settings, size: UVec2) -> u64 {
+    let radius = u64::from(settings.search.max_radius);
+    let longest = match settings.method {
+        // Blocks of side 2^l with 2^(l-1) < 2 MR.
+        Method::NaiveMipmap => 4 * radius,
+        _ => 2 * radius + 1,
+    };
+    longest.min(u64::from(size.x)) * longest.min(u64::from(size.y))
+}
+
+fn known(bound: u64) -> String {
+    if bound == u64::MAX { "any number of".to_owned() } else { bound.to_string() }
+}

@@ -1,0 +1,187 @@
+//! One full-screen draw: label, inputs, uniforms and target in one expression.
+
+use glam::UVec2;
+use glow::HasContext as _;
+
+use super::program::Uniform;
+use super::state::{DRAW_BUFFERS, UNITS};
+use super::{Gl, Program, Texture, gl_error};
+use crate::error::{Error, Result};
+
+/// Textures to draw into, one per draw buffer, with a framebuffer per level.
+#[derive(Debug)]
+pub(crate) struct Target {
+    gl: Gl,
+    textures: Vec<Texture>,
+    framebuffers: Vec<glow::Framebuffer>,
+}
+
+impl Target {
+    /// A target of `textures`, all of one size and one number of levels.
+    ///
+    /// # Errors
+    /// [`Error::Gl`] with the framebuffer's status if the driver can't draw to them.
+    pub(crate) fn new(gl: &Gl, textures: Vec<Texture>) -> Result<Self> {
+        let first = &textures[0];
+        assert!(
+            textures.iter().all(|t| t.size() == first.size() && t.levels() == first.levels()),
+            "the textures of one target have one size"
+        );
+        assert!(textures.len() <= DRAW_BUFFERS as usize, "StateGuard covers {DRAW_BUFFERS} draw buffers");
+        let levels = first.levels();
+        let mut target = Self { gl: gl.clone(), textures, framebuffers: Vec::new() };
+        let glow = gl.glow();
+        for level in 0..levels {
+            // SAFETY: the context is current while the handle lives.
+            unsafe {
+                let framebuffer = glow.create_framebuffer().map_err(|what| gl_error(glow, &what))?;
+                target.framebuffers.push(framebuffer);
+                glow.bind_framebuffer(glow::FRAMEBUFFER, Some(framebuffer));
+                let mut attachments = Vec::new();
+                for (attachment, texture) in (glow::COLOR_ATTACHMENT0..).zip(&target.textures) {
+                    glow.framebuffer_texture_2d(
+                        glow::FRAMEBUFFER,
+                        attachment,
+                        glow::TEXTURE_2D,
+                        Some(texture.name()),
+                        level.cast_signed(),
+                    );
+                    attachments.push(attachment);
+                }
+                glow.draw_buffers(&attachments);
+                let status = glow.check_framebuffer_status(glow::FRAMEBUFFER);
+                if status != glow::FRAMEBUFFER_COMPLETE {
+                    let formats: Vec<_> = target.textures.iter().map(|t| t.format().name()).collect();
+                    return Err(Error::Gl {
+                        code: format!("framebuffer status {status:#06x}"),
+                        what: format!("attaching {}", formats.join(" and ")),
+                    });
+                }
+            }
+        }
+        Ok(target)
+    }
+
+    /// A target of one texture that is allocated for it.
+    ///
+    /// # Errors
+    /// Those of [`Texture::new`] and [`Target::new`].
+    pub(crate) fn single(gl: &Gl, texture: Texture) -> Result<Self> {
+        Self::new(gl, vec![texture])
+    }
+
+    /// The texture of the first draw buffer.
+    pub(crate) fn texture(&self) -> &Texture {
+        &self.textures[0]
+    }
+
+    /// All textures, in the order of the draw buffers.
+    pub(crate) fn textures(&self) -> &[Texture] {
+        &self.textures
+    }
+
+    /// Fills the levels above 0 of the first texture with glGenerateMipmap.
+    pub(crate) fn generate_mipmaps(&mut self) {
+        self.textures[0].generate_mipmaps();
+    }
+
+    pub(crate) fn size(&self) -> UVec2 {
+        self.texture().size()
+    }
+}
+
+impl Drop for Target {
+    fn drop(&mut self) {
+        for framebuffer in self.framebuffers.drain(..) {
+            // SAFETY: the context is current while the handle lives, and the name is ours.
+            unsafe { self.gl.glow().delete_framebuffer(framebuffer) };
+        }
+    }
+}
+
+/// One draw, not yet sent.
+///
+/// The raster state (no blending, no scissor, ...) is that of [`StateGuard`](super::StateGuard), which every
+/// public call holds; a pass adds program, textures, samplers, framebuffer, viewport and vertex array.
+#[must_use = "a pass draws nothing before `fill`"]
+pub(crate) struct Pass<'a> {
+    label: &'a str,
+    program: &'a Program,
+    reads: Vec<(&'static str, &'a Texture)>,
+    uniforms: Vec<(&'static str, Uniform)>,
+}
+
+impl<'a> Pass<'a> {
+    pub(crate) fn new(label: &'a str, program: &'a Program) -> Self {
+        Self { label, program, reads: Vec::new(), uniforms: Vec::new() }
+    }
+
+    /// Binds `texture` to the sampler `name`.
+    pub(crate) fn read(mut self, name: &'static str, texture: &'a Texture) -> Self {
+        assert!(self.reads.len() < UNITS as usize, "StateGuard covers {UNITS} texture units");
+        self.reads.push((name, texture));
+        self
+    }
+
+    /// Sets the uniform `name`.
+    pub(crate) fn set(mut self, name: &'static str, value: impl Into<Uniform>) -> Self {
+        self.uniforms.push((name, value.into()));
+        self
+    }
+
+    /// Draws over the whole of `target`.
+    ///
+    /// # Errors
+    /// [`Error::UnknownUniform`] if the program lacks a name.
+    pub(crate) fn fill(self, target: &mut Target) -> Result<()> {
+        self.draw(target, 0)
+    }
+
+    /// Draws over `level` of `target`, reading the level before it as the sampler `name`.
+    ///
+    /// # Errors
+    /// [`Error::UnknownUniform`] if the program lacks a name.
+    pub(crate) fn fill_from_level_below(
+        self,
+        name: &'static str,
+        target: &mut Target,
+        level: u32,
+    ) -> Result<()> {
+        target.texture().select_levels(level - 1, level - 1);
+        let chain = target.texture();
+        let pass = Pass {
+            reads: self.reads.iter().copied().chain([(name, chain)]).collect(),
+            uniforms: self.uniforms.clone(),
+            ..self
+        };
+        let drawn = pass.draw(target, level);
+        target.texture().select_levels(0, target.texture().levels() - 1);
+        drawn
+    }
+
+    fn draw(&self, target: &Target, level: u32) -> Result<()> {
+        let gl = self.program.gl();
+        gl.labelled(self.label, || {
+            self.program.use_program();
+            for (unit, &(name, texture)) in (0..).zip(&self.reads) {
+                texture.bind(unit);
+                self.program.set_sampler(name, texture.sampler_kind(), unit)?;
+                // SAFETY: the context is current, and the sampler lives as long as the handle.
+                unsafe { gl.glow().bind_sampler(unit, Some(gl.sampler(texture.levels()))) };
+            }
+            for &(name, value) in &self.uniforms {
+                self.program.set(name, value)?;
+            }
+            let size = target.texture().level_size(level).as_ivec2();
+            // SAFETY: the context is current, the framebuffer is complete, and the vertex stage reads no buffer.
+            unsafe {
+                let glow = gl.glow();
+                glow.bind_framebuffer(glow::DRAW_FRAMEBUFFER, Some(target.framebuffers[level as usize]));
+                glow.viewport(0, 0, size.x, size.y);
+                glow.bind_vertex_array(Some(gl.vertex_array()));
+                glow.draw_arrays(glow::TRIANGLES, 0, 3);
+            }
+            Ok(())
+        })
+    }
+}

@@ -1,0 +1,128 @@
+//! What flows between the stages, each with its unit.
+
+use glam::UVec2;
+
+use crate::error::Result;
+use crate::exactness::CountBounds;
+use crate::gl::{Gl, StateGuard, Target, Texture, TextureFormat};
+use crate::image::Image;
+
+/// Photons per pixel: a GL_R32UI texture, or a GL_R32F one as additive blending of points fills it.
+///
+/// Values are whole and not negative; in GL_R32F they are exact up to 2^24 a pixel, where adding 1 stops to count.
+#[derive(Debug)]
+pub struct DensityMap {
+    texture: Texture,
+    bounds: CountBounds,
+}
+
+impl DensityMap {
+    /// Makes a texture of `counts`.
+    ///
+    /// # Errors
+    /// [`Error::TooLarge`](crate::Error::TooLarge); [`Error::Gl`](crate::Error::Gl) when memory runs out.
+    pub fn upload(gl: &Gl, counts: &Image<u32>, bounds: CountBounds) -> Result<Self> {
+        let _state = StateGuard::new(gl);
+        let texture = Texture::new(gl, TextureFormat::R32Uint, counts.size(), 1)?;
+        texture.upload(counts);
+        gl.check("uploading a density map")?;
+        Ok(Self { texture, bounds })
+    }
+
+    /// Uses a texture that the host owns and keeps alive as long as this.
+    ///
+    /// `bounds` says what the host knows of its counts; with [`CountBounds::UNKNOWN`] a result is refused unless n
+    /// and MR alone prove it exact.
+    ///
+    /// # Errors
+    /// [`Error::Mismatch`](crate::Error::Mismatch) unless it is a GL_TEXTURE_2D in GL_R32UI, GL_R32F or GL_R8UI.
+    pub fn borrow(gl: &Gl, texture: glow::Texture, bounds: CountBounds) -> Result<Self> {
+        let _state = StateGuard::new(gl);
+        Ok(Self { texture: Texture::borrow(gl, texture)?, bounds })
+    }
+
+    /// Columns and rows.
+    #[must_use]
+    pub fn size(&self) -> UVec2 {
+        self.texture.size()
+    }
+
+    /// The format of the texture.
+    #[must_use]
+    pub fn format(&self) -> TextureFormat {
+        self.texture.format()
+    }
+
+    /// What is known of the counts.
+    #[must_use]
+    pub fn bounds(&self) -> CountBounds {
+        self.bounds
+    }
+
+    pub(crate) fn texture(&self) -> &Texture {
+        &self.texture
+    }
+}
+
+/// The radius of each pixel's box, in pixels: a GL_R32UI texture, from 1 to MR.
+#[derive(Debug)]
+pub struct RadiusMap {
+    target: Target,
+}
+
+impl RadiusMap {
+    /// An empty map, with a second plane for the mask if wanted.
+    pub(crate) fn new(gl: &Gl, size: UVec2, limited_mask: bool) -> Result<Self> {
+        let mut textures = vec![Texture::new(gl, TextureFormat::R32Uint, size, 1)?];
+        if limited_mask {
+            textures.push(Texture::new(gl, TextureFormat::R8Uint, size, 1)?);
+        }
+        Ok(Self { target: Target::new(gl, textures)? })
+    }
+
+    /// The texture of radii, to bind in the host's own shaders as a `usampler2D`; valid as long as this.
+    #[must_use]
+    pub fn texture(&self) -> glow::Texture {
+        self.target.texture().name()
+    }
+
+    /// The GL_R8UI texture that is 1 where MR ended the search with too few photons, if it was asked for.
+    #[must_use]
+    pub fn limited_texture(&self) -> Option<glow::Texture> {
+        self.target.textures().get(1).map(Texture::name)
+    }
+
+    /// Reads the radii back; waits for the GPU.
+    ///
+    /// # Errors
+    /// [`Error::Gl`](crate::Error::Gl) if the driver fails, as when the context is lost.
+    pub fn read(&self) -> Result<Image<u32>> {
+        let _state = StateGuard::new(self.gl());
+        let radii = self.target.texture().read(0);
+        self.gl().check("reading a radius map back")?;
+        Ok(radii)
+    }
+
+    /// Reads the mask back, if it was asked for; waits for the GPU.
+    ///
+    /// # Errors
+    /// [`Error::Gl`](crate::Error::Gl) if the driver fails, as when the context is lost.
+    pub fn read_limited(&self) -> Result<Option<Image<u8>>> {
+        let _state = StateGuard::new(self.gl());
+        let mask = self.target.textures().get(1).map(|texture| texture.read(0));
+        self.gl().check("reading a mask back")?;
+        Ok(mask)
+    }
+
+    pub(crate) fn target(&mut self) -> &mut Target {
+        &mut self.target
+    }
+
+    pub(crate) fn as_texture(&self) -> &Texture {
+        self.target.texture()
+    }
+
+    fn gl(&self) -> &Gl {
+        self.target.texture().gl()
+    }
+}

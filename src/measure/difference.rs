@@ -1,0 +1,102 @@
+//! How two maps differ, pixel by pixel.
+
+use std::fmt;
+
+use crate::error::{Error, Result};
+use crate::image::Image;
+
+/// Places that a [`Difference`] remembers.
+const PLACES: usize = 5;
+
+/// What differs between two maps of one size.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Difference {
+    /// Pixels that were compared.
+    pub pixels: u64,
+    /// Pixels whose values differ.
+    pub wrong_pixels: u64,
+    /// The largest |a - b|.
+    pub max: u64,
+    /// The mean of |a - b| over all pixels.
+    pub mean: f64,
+    /// The first pixels that differ, row by row; at most five.
+    pub first: Vec<Place>,
+}
+
+/// A pixel with two values.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Place {
+    /// Column.
+    pub x: u32,
+    /// Row.
+    pub y: u32,
+    /// Value in the first map.
+    pub a: u32,
+    /// Value in the second map.
+    pub b: u32,
+}
+
+impl Difference {
+    /// Compares every pixel of `a` with that of `b`.
+    ///
+    /// # Errors
+    /// [`Error::Mismatch`] if their sizes differ.
+    pub fn between<T: Copy + Into<u32>>(a: &Image<T>, b: &Image<T>) -> Result<Self> {
+        if a.size() != b.size() {
+            let text = |image: &Image<T>| format!("{} x {}", image.size().x, image.size().y);
+            return Err(Error::Mismatch { what: "size of the second map", expected: text(a), got: text(b) });
+        }
+        let width = a.size().x as usize;
+        let mut difference =
+            Self { pixels: a.values().len() as u64, wrong_pixels: 0, max: 0, mean: 0.0, first: Vec::new() };
+        let mut sum = 0_u64;
+        for (index, (&a, &b)) in a.values().iter().zip(b.values()).enumerate() {
+            let (a, b): (u32, u32) = (a.into(), b.into());
+            if a == b {
+                continue;
+            }
+            difference.wrong_pixels += 1;
+            difference.max = difference.max.max(u64::from(a.abs_diff(b)));
+            sum += u64::from(a.abs_diff(b));
+            if difference.first.len() < PLACES {
+                let coordinate = |value: usize| u32::try_from(value).unwrap_or(u32::MAX);
+                difference.first.push(Place {
+                    x: coordinate(index % width),
+                    y: coordinate(index / width),
+                    a,
+                    b,
+                });
+            }
+        }
+        #[expect(clippy::cast_precision_loss, reason = "a mean is rounded anyway")]
+        {
+            difference.mean = sum as f64 / difference.pixels as f64;
+        }
+        Ok(difference)
+    }
+
+    /// Whether no pixel differs.
+    #[must_use]
+    pub fn is_none(&self) -> bool {
+        self.wrong_pixels == 0
+    }
+}
+
+impl fmt::Display for Difference {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.is_none() {
+            return write!(formatter, "all {} pixels are equal", self.pixels);
+        }
+        write!(
+            formatter,
+            "{} of {} pixels differ, by {:.4} on average over all and {} at most; first at",
+            self.wrong_pixels, self.pixels, self.mean, self.max
+        )?;
+        for Place { x, y, a, b } in &self.first {
+            write!(formatter, " ({x}, {y}): {a} and {b};")?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,5 @@
+//! How right and how fast a result is.
+
+mod difference;
+
+pub use difference::{Difference, Place};

@@ -1,0 +1,129 @@
+//! The stages in order: the one file that knows them all, and what a host engine calls.
+
+use glam::UVec2;
+
+use crate::error::{Error, Result};
+use crate::exactness::{self, Plan};
+use crate::gl::{Gl, ShaderSource, StateGuard, TextureFormat};
+use crate::loop_limit;
+use crate::maps::{DensityMap, RadiusMap};
+use crate::radius::{self, Continued, RadiusSearch};
+use crate::settings::{Method, Order, Settings};
+use crate::structure::{self, Structure};
+
+/// Density map in, radius map out, for one size and one set of settings.
+///
+/// Everything is allocated and compiled by [`RadiusPipeline::new`]; [`render`](Self::render) only draws. Each call
+/// puts back the OpenGL state that it touches, also when it fails; the list is the crate's
+/// [state contract](crate#the-hosts-opengl-state).
+#[derive(Debug)]
+pub struct RadiusPipeline {
+    gl: Gl,
+    settings: Settings,
+    size: UVec2,
+    density_format: TextureFormat,
+    structure: Structure,
+    search: RadiusSearch,
+}
+
+impl RadiusPipeline {
+    /// Allocates and compiles for maps of `size` in `density_format`.
+    ///
+    /// # Errors
+    /// [`Error::Setting`] outside a setting's range, [`Error::TooLarge`], [`Error::Shader`] if the driver refuses a
+    /// shader, [`Error::Gl`] when memory runs out.
+    pub fn new(gl: &Gl, size: UVec2, density_format: TextureFormat, settings: Settings) -> Result<Self> {
+        settings.validate()?;
+        let passes = loop_limit::passes(gl.info(), &settings)?;
+        let limit = gl.info().max_texture_size;
+        if size.max_element() > limit || size.min_element() == 0 {
+            return Err(Error::TooLarge { size, limit });
+        }
+        let _state = StateGuard::new(gl);
+        gl.forget_errors();
+        let pipeline = Self {
+            gl: gl.clone(),
+            settings,
+            size,
+            density_format,
+            structure: Structure::new(gl, size, density_format, &settings)?,
+            search: RadiusSearch::new(gl, size, density_format, &settings, passes)?,
+        };
+        gl.check("setting up a radius pipeline")?;
+        Ok(pipeline)
+    }
+
+    /// Builds the structure and searches: all that a frame needs.
+    ///
+    /// # Errors
+    /// [`Error::Mismatch`] if the map's size or format is another than the pipeline's; [`Error::Inexact`] if the
+    /// map's bounds do not prove the result exact and [`Settings::exactness`] asks for that; [`Error::Gl`] if the
+    /// driver fails.
+    pub fn render(&mut self, density: &DensityMap) -> Result<&RadiusMap> {
+        self.build(density)?;
+        self.search(density)
+    }
+
+    /// Fills the intermediate structure: the first half of [`render`](Self::render), apart for timing.
+    ///
+    /// # Errors
+    /// As [`render`](Self::render).
+    pub fn build(&mut self, density: &DensityMap) -> Result<()> {
+        self.check(density)?;
+        let plan = self.plan(density)?;
+        let _state = StateGuard::new(&self.gl);
+        self.gl.forget_errors();
+        self.structure.build(density, plan)?;
+        self.gl.check("building the intermediate structure")
+    }
+
+    /// Searches the structure that [`build`](Self::build) last filled, from the same map.
+    ///
+    /// # Errors
+    /// As [`render`](Self::render).
+    pub fn search(&mut self, density: &DensityMap) -> Result<&RadiusMap> {
+        self.check(density)?;
+        let _state = StateGuard::new(&self.gl);
+        self.gl.forget_errors();
+        self.search.estimate(density, &self.structure)?;
+        self.gl.check("searching radii")?;
+        Ok(self.search.radii())
+    }
+
+    /// How the counts of `density` would be taken in, and whether the result is exact.
+    ///
+    /// # Errors
+    /// [`Error::Inexact`] as [`render`](Self::render).
+    pub fn plan(&self, density: &DensityMap) -> Result<Plan> {
+        exactness::plan(&self.settings, self.size, density.bounds())
+    }
+
+    /// The settings that the pipeline was made with.
+    #[must_use]
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    fn check(&self, density: &DensityMap) -> Result<()> {
+        let describe = |size: UVec2, format: TextureFormat| format!("{} x {} {}", size.x, size.y, format.name());
+        if density.size() != self.size || density.format() != self.density_format {
+            return Err(Error::Mismatch {
+                what: "density map",
+                expected: describe(self.size, self.density_format),
+                got: describe(density.size(), density.format()),
+            });
+        }
+        Ok(())
+    }
+}
+
+/// The fragment shaders that a pipeline of these settings may compile, in the order of its passes.
+#[must_use]
+pub fn shader_sources(density_format: TextureFormat, settings: &Settings) -> Vec<ShaderSource> {
+    let mut sources = structure::build_sources(density_format, settings);
+    sources.push(radius::search_source(density_format, settings, Continued::No));
+    if settings.search.order == Order::Forward && settings.method != Method::NaiveMipmap {
+        sources.push(radius::search_source(density_format, settings, Continued::Yes));
+    }
+    sources
+}

@@ -1,0 +1,305 @@
+//! What is asked of the search: n, MR, edges, method and its variants.
+//!
+//! Plain structs with public fields; [`Settings::default`] is exact and fast, [`Settings::thesis`] is what the
+//! thesis ran.
+
+use crate::error::{Error, Result};
+
+/// The largest possible [`Search::max_radius`]: the area (2 MR + 1)² still fits 32 bits.
+pub const MAX_RADIUS_LIMIT: u32 = 32_767;
+
+/// The largest [`Search::max_radius`] of the naive mipmap, whose blocks have up to four times that side.
+const NAIVE_MAX_RADIUS: u32 = 16_384;
+
+/// The question: the smallest radius whose box holds at least n photons (thesis 1.3).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Search {
+    /// n, "MP" in the thesis's listings: photons that a box has to hold, at least 1.
+    pub min_photons: u32,
+    /// MR: where the search ends, in pixels, from 1 to [`MAX_RADIUS_LIMIT`]; it may exceed the map.
+    ///
+    /// Pixels that find too few photons get MR.
+    pub max_radius: u32,
+    /// What counts outside the map.
+    pub edges: Edges,
+    /// In which order radii are tried; without effect on exact results.
+    pub order: Order,
+}
+
+/// What a box holds where it reaches past the map (thesis 3.1, 4.4).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+pub enum Edges {
+    /// Nothing is outside.
+    Zero,
+    /// As much, per area, as inside: the count is scaled by total area over inside area.
+    Scale,
+}
+
+/// In which order radii are tried (thesis 3.5).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+pub enum Order {
+    /// 1, 2, 3, ... up to the first that holds enough: as many counts as the radius is long.
+    Forward,
+    /// Halving the range from 1 to MR: about log2 MR counts, whatever the radius.
+    Binary,
+}
+
+/// How photons in a box are counted: the thesis's solutions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+pub enum Method {
+    /// Every pixel of every box (3.2, 4.1).
+    BruteForce,
+    /// Up one column of a summed mipmap, blind to the neighbours: the thesis's counter-example (3.3.1).
+    NaiveMipmap,
+    /// A box cut into mipmap texels that glGenerateMipmap averaged: approximate (4.3).
+    AveragedMipmap,
+    /// A box cut into texels of a summed mipmap, with a fixed stack (3.3.2, 4.3).
+    Pyramid,
+    /// Four texels of a summed-area table (3.4, 4.2).
+    #[cfg_attr(feature = "cli", value(name = "sat"))]
+    #[cfg_attr(feature = "serde", serde(rename = "sat"))]
+    SummedAreaTable,
+}
+
+impl Method {
+    /// All methods, in the thesis's order.
+    pub const ALL: [Self; 5] =
+        [Self::BruteForce, Self::NaiveMipmap, Self::AveragedMipmap, Self::Pyramid, Self::SummedAreaTable];
+
+    /// Whether the method answers the box question exactly while its sums are exact.
+    #[must_use]
+    pub fn is_exact(self) -> bool {
+        match self {
+            Self::BruteForce | Self::Pyramid | Self::SummedAreaTable => true,
+            Self::NaiveMipmap | Self::AveragedMipmap => false,
+        }
+    }
+}
+
+/// How a pyramid's remaining area is split after a sample (thesis 4.3).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+pub enum Split {
+    /// By which coordinates are odd: the first listing.
+    Odd,
+    /// So that the larger piece is as large as possible: the second listing.
+    Larger,
+}
+
+/// How the pyramid finds the level of its next sample (thesis 4.3, 6.3.5).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+pub enum Matching {
+    /// From the top level down until corner and extent fit, by modulo: the thesis's loop.
+    Modulo,
+    /// From the lowest set bit of the corner and the highest of the extent, without a loop: its future work.
+    Bits,
+}
+
+/// Samples that a doubling pass adds, s; a table of side w takes ⌈log_s w⌉ passes a direction (thesis 4.2).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+pub enum SatSamples {
+    /// 2, recursive doubling as Hensley et al. give it.
+    #[cfg_attr(feature = "cli", value(name = "2"))]
+    Two,
+    /// 4, the thesis's faster one.
+    #[cfg_attr(feature = "cli", value(name = "4"))]
+    Four,
+    /// 8.
+    #[cfg_attr(feature = "cli", value(name = "8"))]
+    Eight,
+    /// 16.
+    #[cfg_attr(feature = "cli", value(name = "16"))]
+    Sixteen,
+}
+
+impl SatSamples {
+    /// All of them, ascending.
+    pub const ALL: [Self; 4] = [Self::Two, Self::Four, Self::Eight, Self::Sixteen];
+
+    /// s as a number.
+    #[must_use]
+    pub fn count(self) -> u32 {
+        match self {
+            Self::Two => 2,
+            Self::Four => 4,
+            Self::Eight => 8,
+            Self::Sixteen => 16,
+        }
+    }
+}
+
+#[cfg(feature = "serde")]
+impl serde::Serialize for SatSamples {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_u32(self.count())
+    }
+}
+
+/// The number in which sums are kept.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+pub enum Storage {
+    /// 32-bit float, as the thesis: whole numbers up to 2^24.
+    F32,
+    /// 32-bit unsigned integer: right while every box holds less than 2^32, even where the table wraps.
+    U32,
+}
+
+/// Faults of the thesis's printed listings, each of which can be switched on (see
+/// [`structure::summed_area_table`](crate::structure) for what they are and do).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[expect(clippy::struct_excessive_bools, reason = "each fault can be switched on without the others")]
+pub struct Faults {
+    /// Listing 4.2, sampling: coordinates are clamped to 0..63 whatever the map's size.
+    pub clamp_to_63: bool,
+    /// Listing 4.2, sampling: `ll.x > 0` where `>= 0` is meant, so that boxes from column or row 1 count 0 as well.
+    pub border_test: bool,
+    /// Listing 4.2, sampling: the lower left is added back unless *both* coordinates are outside.
+    pub corner_test: bool,
+    /// Listing 4.2, generation: horizontal passes move along y and vertical ones along x.
+    pub swapped_axes: bool,
+    /// Listing 4.2, generation with more than 2 samples: the first offset stays a power of two, one sample too many is
+    /// added, and always along x.
+    pub sample_stride: bool,
+    /// First listing of 4.3: with one odd coordinate, a strip in the other direction alone is forgotten.
+    pub forgotten_strip: bool,
+    /// Section 4.4: the outside ratio is a rounded f32 division.
+    pub float_ratio: bool,
+}
+
+impl Faults {
+    /// No fault.
+    pub const NONE: Self = Self {
+        clamp_to_63: false,
+        border_test: false,
+        corner_test: false,
+        swapped_axes: false,
+        sample_stride: false,
+        forgotten_strip: false,
+        float_ratio: false,
+    };
+
+    /// Every listing as printed.
+    pub const AS_PRINTED: Self = Self {
+        clamp_to_63: true,
+        border_test: true,
+        corner_test: true,
+        swapped_axes: true,
+        sample_stride: true,
+        forgotten_strip: true,
+        float_ratio: true,
+    };
+
+    /// Whether the sampling of the summed-area table is at fault.
+    #[must_use]
+    pub fn in_table_sampling(self) -> bool {
+        self.clamp_to_63 || self.border_test || self.corner_test
+    }
+}
+
+/// What happens where the sums could round or wrap.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
+pub enum Exactness {
+    /// An error before anything is computed.
+    Required,
+    /// It is computed all the same, to measure how wrong it gets.
+    Waived,
+}
+
+/// Everything that a [`RadiusPipeline`](crate::RadiusPipeline) needs to know beside the map's size.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Settings {
+    /// The question.
+    pub search: Search,
+    /// How boxes are counted.
+    pub method: Method,
+    /// The pyramid's and the averaged mipmap's splitting rule.
+    pub split: Split,
+    /// How the pyramid and the averaged mipmap match an area with a level.
+    pub matching: Matching,
+    /// Samples a pass when the summed-area table is built.
+    pub sat_samples: SatSamples,
+    /// The number in which sums are kept; the averaged mipmap is always f32.
+    pub storage: Storage,
+    /// Which of the thesis's misprints to run with.
+    pub faults: Faults,
+    /// Whether an inexact result is an error.
+    pub exactness: Exactness,
+    /// Whether the pixels that found too few photons within MR are marked in a second plane.
+    pub limited_mask: bool,
+}
+
+impl Default for Settings {
+    /// The summed-area table in u32 with a binary search: exact, for n = 25 and MR = 32.
+    fn default() -> Self {
+        Self {
+            search: Search { min_photons: 25, max_radius: 32, edges: Edges::Scale, order: Order::Binary },
+            method: Method::SummedAreaTable,
+            split: Split::Larger,
+            matching: Matching::Bits,
+            sat_samples: SatSamples::Four,
+            storage: Storage::U32,
+            faults: Faults::NONE,
+            exactness: Exactness::Required,
+            limited_mask: false,
+        }
+    }
+}
+
+impl Settings {
+    /// The thesis's fastest: a summed-area table in f32, 4 samples a pass, MR = 32 (Figure 5.1), n = 25 (Figure 3.2).
+    #[must_use]
+    pub fn thesis() -> Self {
+        Self { matching: Matching::Modulo, storage: Storage::F32, ..Self::default() }
+    }
+
+    /// Checks every range.
+    ///
+    /// # Errors
+    /// [`Error::Setting`] with the field's name.
+    pub fn validate(&self) -> Result<()> {
+        let Search { min_photons, max_radius, .. } = self.search;
+        if min_photons == 0 {
+            return Err(Error::Setting {
+                name: "min_photons",
+                value: "0".to_owned(),
+                reason: "every box holds 0 photons; ask for at least 1".to_owned(),
+            });
+        }
+        if max_radius == 0 || max_radius > MAX_RADIUS_LIMIT {
+            return Err(Error::Setting {
+                name: "max_radius",
+                value: max_radius.to_string(),
+                reason: format!(
+                    "it goes from 1, where the search starts, to {MAX_RADIUS_LIMIT}, where the area (2 MR + 1)² \
+                     still fits 32 bits"
+                ),
+            });
+        }
+        if self.method == Method::NaiveMipmap && max_radius > NAIVE_MAX_RADIUS {
+            return Err(Error::Setting {
+                name: "max_radius",
+                value: max_radius.to_string(),
+                reason: format!(
+                    "the naive mipmap goes up to {NAIVE_MAX_RADIUS}: the area of its last block must fit 32 bits"
+                ),
+            });
+        }
+        Ok(())
+    }
+}

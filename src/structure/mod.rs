@@ -1,0 +1,122 @@
+//! What a counter reads: one file per section of the thesis.
+//!
+//! Each answers "how many photons are in this box?" for `radius.frag`, except the naive mipmap, which does not
+//! answer that question and has a search of its own.
+
+mod brute_force;
+mod mipmap;
+mod pyramid;
+mod summed_area_table;
+
+use glam::UVec2;
+
+use crate::error::Result;
+use crate::exactness::Plan;
+use crate::gl::{Gl, Pass, ShaderSource, TextureFormat};
+use crate::maps::DensityMap;
+use crate::settings::{Method, Settings, Storage};
+
+pub use pyramid::stack_size;
+pub(crate) use pyramid::{largest_level, most_blocks};
+
+/// The intermediate structure of one method, allocated for one size.
+#[derive(Debug)]
+pub(crate) enum Structure {
+    /// The density map itself.
+    BruteForce(brute_force::BruteForce),
+    /// A mipmap chain: summed (naive or split into blocks) or averaged by the driver.
+    Mipmap(mipmap::Mipmap),
+    /// A summed-area table.
+    SummedAreaTable(summed_area_table::SummedAreaTable),
+}
+
+impl Structure {
+    pub(crate) fn new(gl: &Gl, size: UVec2, density: TextureFormat, settings: &Settings) -> Result<Self> {
+        Ok(match settings.method {
+            Method::BruteForce => Self::BruteForce(brute_force::BruteForce::default()),
+            Method::NaiveMipmap | Method::AveragedMipmap | Method::Pyramid => {
+                Self::Mipmap(mipmap::Mipmap::new(gl, size, density, settings)?)
+            }
+            Method::SummedAreaTable => Self::SummedAreaTable(summed_area_table::SummedAreaTable::new(
+                gl, size, density, settings,
+            )?),
+        })
+    }
+
+    /// Fills the structure from a density map.
+    pub(crate) fn build(&mut self, density: &DensityMap, plan: Plan) -> Result<()> {
+        match self {
+            Self::BruteForce(brute_force) => {
+                brute_force.take(plan);
+                Ok(())
+            }
+            Self::Mipmap(mipmap) => mipmap.build(density, plan),
+            Self::SummedAreaTable(table) => table.build(density, plan),
+        }
+    }
+
+    /// Gives the search pass what the method's counter reads.
+    pub(crate) fn read_by<'a>(&'a self, pass: Pass<'a>, density: &'a DensityMap) -> Pass<'a> {
+        match self {
+            Self::BruteForce(brute_force) => brute_force.read_by(pass, density),
+            Self::Mipmap(mipmap) => mipmap.read_by(pass),
+            Self::SummedAreaTable(table) => table.read_by(pass),
+        }
+    }
+}
+
+/// The shaders that build the structure.
+pub(crate) fn build_sources(density: TextureFormat, settings: &Settings) -> Vec<ShaderSource> {
+    match settings.method {
+        Method::BruteForce => Vec::new(),
+        Method::NaiveMipmap | Method::AveragedMipmap | Method::Pyramid => {
+            mipmap::build_sources(density, settings)
+        }
+        Method::SummedAreaTable => summed_area_table::build_sources(density, settings),
+    }
+}
+
+/// Adds the method's `count_in_box`, and what it needs, to the search shader.
+pub(crate) fn counter(source: ShaderSource, density: TextureFormat, settings: &Settings) -> ShaderSource {
+    match settings.method {
+        Method::BruteForce => brute_force::counter(source, density, settings),
+        Method::NaiveMipmap => number(source, settings),
+        Method::AveragedMipmap | Method::Pyramid => pyramid::counter(source, settings),
+        Method::SummedAreaTable => summed_area_table::counter(source, settings),
+    }
+}
+
+/// The number in which the method's sums are kept.
+pub(crate) fn storage(settings: &Settings) -> Storage {
+    match settings.method {
+        // glGenerateMipmap is for filterable formats.
+        Method::AveragedMipmap => Storage::F32,
+        _ => settings.storage,
+    }
+}
+
+/// The texture format of the sums.
+fn format(settings: &Settings) -> TextureFormat {
+    match storage(settings) {
+        Storage::F32 => TextureFormat::R32Float,
+        Storage::U32 => TextureFormat::R32Uint,
+    }
+}
+
+/// Adds the number type of the sums.
+fn number(source: ShaderSource, settings: &Settings) -> ShaderSource {
+    source
+        .define_if(storage(settings) == Storage::F32, "SUM_F32")
+        .file(crate::gl::glsl!("common/sum.glsl"))
+}
+
+/// Adds access to the density map, in the number type of the sums.
+fn density_access(source: ShaderSource, density: TextureFormat, settings: &Settings) -> ShaderSource {
+    let source = source.define_if(density == TextureFormat::R32Float, "DENSITY_F32");
+    number(source, settings).file(crate::gl::glsl!("common/density.glsl"))
+}
+
+/// The shader that copies a density map into level 0 of a structure.
+fn seed_source(label: &str, density: TextureFormat, settings: &Settings) -> ShaderSource {
+    density_access(ShaderSource::new(label), density, settings).file(crate::gl::glsl!("build/seed.frag"))
+}

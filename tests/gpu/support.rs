@@ -1,0 +1,117 @@
+//! Contexts, maps and settings that the tests share.
+
+use glam::UVec2;
+use varikernel::context::{self, DeviceChoice};
+use varikernel::measure::Difference;
+use varikernel::settings::{Edges, Faults, Method, Order, SatSamples, Search, Settings, Split, Storage};
+use varikernel::{CountBounds, DensityMap, Gl, Image, RadiusPipeline, reference};
+
+/// The first EGL device that works, or the reason why none does.
+pub(crate) fn egl() -> Gl {
+    context::open(&DeviceChoice::Egl(None)).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// OSMesa, or the reason why it does not work.
+pub(crate) fn osmesa() -> Gl {
+    context::open(&DeviceChoice::OsMesa).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// A small generator of our own words: SplitMix64 (Steele, Lea, Flood 2014).
+pub(crate) struct Random(pub(crate) u64);
+
+impl Random {
+    pub(crate) fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        z ^ (z >> 31)
+    }
+
+    /// Below `end`.
+    pub(crate) fn below(&mut self, end: u32) -> u32 {
+        u32::try_from(self.next() % u64::from(end)).unwrap()
+    }
+}
+
+/// Random counts below `end`.
+pub(crate) fn random_map(width: u32, height: u32, end: u32) -> Image<u32> {
+    let mut random = Random(u64::from(width) << 32 | u64::from(height) << 8 | u64::from(end));
+    Image::from_fn(UVec2::new(width, height), |_, _| random.below(end))
+}
+
+/// Mostly empty: one pixel in sixteen holds up to three.
+pub(crate) fn sparse_map(width: u32, height: u32) -> Image<u32> {
+    let mut random = Random(99);
+    Image::from_fn(UVec2::new(width, height), |_, _| if random.below(16) == 0 { random.below(4) } else { 0 })
+}
+
+/// One pixel of 10^9 in an otherwise thin map.
+pub(crate) fn spike(width: u32, height: u32) -> Image<u32> {
+    let mut map = sparse_map(width, height);
+    map.set(width / 3, height / 2, 1_000_000_000);
+    map
+}
+
+pub(crate) const SAMPLES: [SatSamples; 4] = SatSamples::ALL;
+
+/// Every exact method with every variant of it, for one question.
+pub(crate) fn exact_variants(search: Search) -> Vec<Settings> {
+    let mut variants = Vec::new();
+    for order in [Order::Forward, Order::Binary] {
+        for storage in [Storage::U32, Storage::F32] {
+            let base = Settings {
+                search: Search { order, ..search },
+                storage,
+                limited_mask: true,
+                ..Settings::default()
+            };
+            variants.push(Settings { method: Method::BruteForce, ..base });
+            for split in [Split::Odd, Split::Larger] {
+                variants.push(Settings { method: Method::Pyramid, split, ..base });
+            }
+            for sat_samples in SAMPLES {
+                variants.push(Settings { method: Method::SummedAreaTable, sat_samples, ..base });
+            }
+        }
+    }
+    variants
+}
+
+pub(crate) fn search(min_photons: u32, max_radius: u32, edges: Edges) -> Search {
+    Search { min_photons, max_radius, edges, order: Order::Binary }
+}
+
+/// The radii that the GPU finds.
+pub(crate) fn on_gpu(gl: &Gl, density: &Image<u32>, settings: Settings) -> reference::Radii {
+    let bounds = CountBounds::of(density, settings.search);
+    let map = DensityMap::upload(gl, density, bounds).unwrap();
+    let mut pipeline = RadiusPipeline::new(gl, density.size(), map.format(), settings).unwrap();
+    let radii = pipeline.render(&map).unwrap();
+    let radius = radii.read().unwrap();
+    let limited = radii.read_limited().unwrap().expect("the tests ask for the mask");
+    reference::Radii { radius, limited }
+}
+
+/// Every fault on its own, then all.
+pub(crate) fn each_fault() -> Vec<Faults> {
+    let none = Faults::NONE;
+    vec![
+        Faults { clamp_to_63: true, ..none },
+        Faults { border_test: true, ..none },
+        Faults { corner_test: true, ..none },
+        Faults { swapped_axes: true, ..none },
+        Faults { sample_stride: true, ..none },
+        Faults { forgotten_strip: true, ..none },
+        Faults { float_ratio: true, ..none },
+        Faults::AS_PRINTED,
+    ]
+}
+
+/// Fails with the first places that differ.
+pub(crate) fn assert_same(found: &reference::Radii, expected: &reference::Radii, context: &str) {
+    let radius = Difference::between(&found.radius, &expected.radius).unwrap();
+    assert!(radius.is_none(), "{context}\nfound and expected radius: {radius}");
+    let limited = Difference::between(&found.limited, &expected.limited).unwrap();
+    assert!(limited.is_none(), "{context}\nfound and expected limited mask: {limited}");
+}
