@@ -3,7 +3,13 @@
 //! Row 0 is the first row of the picture, in memory, in every file format and in the textures made from it.
 
 #[cfg(feature = "files")]
+mod atomic;
+#[cfg(feature = "files")]
+mod attribute;
+#[cfg(feature = "files")]
 mod colour_map;
+#[cfg(feature = "files")]
+mod counts;
 #[cfg(feature = "files")]
 mod exr;
 #[cfg(feature = "files")]
@@ -11,10 +17,20 @@ mod files;
 #[cfg(feature = "files")]
 mod npy;
 #[cfg(feature = "files")]
+mod picture;
+#[cfg(feature = "files")]
 mod png;
 
 #[cfg(feature = "files")]
-pub use files::{Attribute, Format, Picture, ReadOptions, read_counts, write_counts, write_picture};
+pub use atomic::{check_writable, write_atomically};
+#[cfg(feature = "files")]
+pub use attribute::{Attribute, AttributeValue};
+#[cfg(feature = "files")]
+pub use counts::ReadOptions;
+#[cfg(feature = "files")]
+pub use files::{Format, read_counts, write_counts, write_picture};
+#[cfg(feature = "files")]
+pub use picture::Picture;
 
 use glam::UVec2;
 
