@@ -46,9 +46,8 @@ impl CountBounds {
         if total <= U32_MAX {
             return Self::total_at_most(total);
         }
-        let densest = |counts: &Image<u32>| {
-            crate::reference::Table::new(counts).densest_box(search.max_radius)
-        };
+        let densest =
+            |counts: &Image<u32>| crate::reference::Table::new(counts).densest_box(search.max_radius);
         Self {
             total,
             densest_box: densest(density),
@@ -102,7 +101,10 @@ pub fn plan(settings: &Settings, size: UVec2, bounds: CountBounds) -> Result<Pla
             }
         }
         (Method::SummedAreaTable, Storage::F32) if bounds.total > F32_MAX => inexact(
-            format!("a table in f32 is exact up to {F32_MAX} photons in all, and the map may hold {}", known(bounds.total)),
+            format!(
+                "a table in f32 is exact up to {F32_MAX} photons in all, and the map may hold {}",
+                known(bounds.total)
+            ),
             "keep the table in u32",
         ),
         (Method::BruteForce | Method::NaiveMipmap | Method::Pyramid, Storage::F32)

@@ -14,6 +14,8 @@ mod radius;
 pub mod reference;
 pub mod settings;
 pub mod structure;
+#[cfg(feature = "synth")]
+pub mod synth;
 
 pub use error::{Error, Result};
 pub use exactness::CountBounds;

@@ -105,7 +105,8 @@ impl RadiusPipeline {
     }
 
     fn check(&self, density: &DensityMap) -> Result<()> {
-        let describe = |size: UVec2, format: TextureFormat| format!("{} x {} {}", size.x, size.y, format.name());
+        let describe =
+            |size: UVec2, format: TextureFormat| format!("{} x {} {}", size.x, size.y, format.name());
         if density.size() != self.size || density.format() != self.density_format {
             return Err(Error::Mismatch {
                 what: "density map",

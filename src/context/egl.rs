@@ -57,7 +57,8 @@ fn is_software(device: &EglDevice) -> bool {
 pub(super) fn open(device: &Device) -> Result<Opened, String> {
     let step = |what: &'static str| move |error: glutin::error::Error| format!("{what}: {error}");
     // SAFETY: no raw display handle is passed, so there is none to be invalid.
-    let display = unsafe { Display::with_device(&device.handle, None) }.map_err(step("making an EGL display"))?;
+    let display =
+        unsafe { Display::with_device(&device.handle, None) }.map_err(step("making an EGL display"))?;
     let template = ConfigTemplateBuilder::new()
         .with_api(Api::OPENGL)
         .with_surface_type(ConfigSurfaceTypes::empty())
@@ -77,9 +78,8 @@ pub(super) fn open(device: &Device) -> Result<Opened, String> {
     // SAFETY: the attributes hold no window handle.
     let context = unsafe { display.create_context(&config, &attributes) }
         .map_err(step("making an OpenGL 3.3 core context"))?;
-    let current = context
-        .make_current_surfaceless()
-        .map_err(step("making the context current without a surface"))?;
+    let current =
+        context.make_current_surfaceless().map_err(step("making the context current without a surface"))?;
     let loader_display = display.clone();
     let loader = move |name: &CStr| loader_display.get_proc_address(name).cast::<c_void>();
     Ok(Opened {

@@ -198,7 +198,8 @@ impl ThreadGuard {
         let open = OPEN.with(Rc::clone);
         if open.replace(true) {
             return Err(Error::NoContext(
-                "a headless context is already open on this thread; drop everything made from it first".to_owned(),
+                "a headless context is already open on this thread; drop everything made from it first"
+                    .to_owned(),
             ));
         }
         Ok(Self { open })

@@ -85,6 +85,16 @@ impl Target {
         self.textures[0].generate_mipmaps();
     }
 
+    /// Sets the first texture, of unsigned integers, to 0.
+    pub(super) fn clear(&self) {
+        // SAFETY: the context is current while the handle lives, and draw buffer 0 is an unsigned integer one.
+        unsafe {
+            let glow = self.gl.glow();
+            glow.bind_framebuffer(glow::DRAW_FRAMEBUFFER, Some(self.framebuffers[0]));
+            glow.clear_buffer_u32_slice(glow::COLOR, 0, &[0; 4]);
+        }
+    }
+
     pub(crate) fn size(&self) -> UVec2 {
         self.texture().size()
     }

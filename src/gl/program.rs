@@ -63,12 +63,8 @@ impl Program {
         // SAFETY: the context is current while the handle lives; each name is deleted on every way out.
         unsafe {
             let name = glow.create_program().map_err(|what| gl_error(glow, &what))?;
-            let mut owned = Self {
-                gl: gl.clone(),
-                label: source.label().to_owned(),
-                name,
-                uniforms: BTreeMap::new(),
-            };
+            let mut owned =
+                Self { gl: gl.clone(), label: source.label().to_owned(), name, uniforms: BTreeMap::new() };
             for (stage, text) in
                 [(glow::VERTEX_SHADER, source.vertex()), (glow::FRAGMENT_SHADER, source.fragment())]
             {

@@ -114,11 +114,7 @@ impl Texture {
         let minification = if levels > 1 { glow::NEAREST_MIPMAP_NEAREST } else { glow::NEAREST };
         // SAFETY: as above; the texture is bound.
         unsafe {
-            glow.tex_parameter_i32(
-                glow::TEXTURE_2D,
-                glow::TEXTURE_MIN_FILTER,
-                minification.cast_signed(),
-            );
+            glow.tex_parameter_i32(glow::TEXTURE_2D, glow::TEXTURE_MIN_FILTER, minification.cast_signed());
             glow.tex_parameter_i32(glow::TEXTURE_2D, glow::TEXTURE_MAG_FILTER, glow::NEAREST.cast_signed());
         }
         texture.select_levels(0, levels - 1);
@@ -131,7 +127,8 @@ impl Texture {
     /// # Errors
     /// [`Error::Mismatch`] if it is not a two-dimensional texture of a known format with level 0 as its base.
     pub(crate) fn borrow(gl: &Gl, name: glow::Texture) -> Result<Self> {
-        let mismatch = |expected: String, got: String| Error::Mismatch { what: "host texture", expected, got };
+        let mismatch =
+            |expected: String, got: String| Error::Mismatch { what: "host texture", expected, got };
         let glow = gl.glow();
         // SAFETY: the context is current while the handle lives; a name of another target is an error that is
         // asked for at once.

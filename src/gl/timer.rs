@@ -2,9 +2,10 @@
 
 use std::time::{Duration, Instant};
 
+use glam::UVec2;
 use glow::HasContext as _;
 
-use super::{Gl, gl_error};
+use super::{Gl, StateGuard, Target, Texture, TextureFormat, gl_error};
 use crate::error::Result;
 
 /// One timed piece of work.
@@ -19,20 +20,32 @@ pub struct Sample {
 
 /// Runs `work`, waits for it, and says how long it took on the GPU and by the clock.
 ///
-/// On llvmpipe the query's begin is stamped when the first tile ends unless glFinish follows it, so it does there.
+/// llvmpipe stamps the begin of a query while it rasterises the frame in hand: too late if that frame is the timed
+/// work, and never if there is none. There, a frame of one pixel is put before the begin and another finished right
+/// after it.
 /// No other GL_TIME_ELAPSED query may be running: nested ones are an error in OpenGL.
 ///
 /// # Errors
 /// Those of `work`, and [`Error::Gl`](crate::Error::Gl) if the query fails.
 pub fn time<T>(gl: &Gl, work: impl FnOnce() -> Result<T>) -> Result<(T, Sample)> {
     let glow = gl.glow();
+    let _state = StateGuard::new(gl);
+    let llvmpipe_frame = if gl.info().is_llvmpipe() {
+        Some(Target::single(gl, Texture::new(gl, TextureFormat::R32Uint, UVec2::ONE, 1)?)?)
+    } else {
+        None
+    };
     // SAFETY: the context is current while the handle lives.
     let query = unsafe { glow.create_query() }.map_err(|what| gl_error(glow, &what))?;
     // SAFETY: as above; the query is deleted on every way out.
     unsafe {
+        if let Some(frame) = &llvmpipe_frame {
+            frame.clear();
+        }
         glow.finish();
         glow.begin_query(glow::TIME_ELAPSED, query);
-        if gl.info().is_llvmpipe() {
+        if let Some(frame) = &llvmpipe_frame {
+            frame.clear();
             glow.finish();
         }
     }

@@ -100,3 +100,30 @@ impl fmt::Display for Difference {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::UVec2;
+
+    use super::*;
+
+    #[test]
+    fn counts_largest_mean_and_places_by_hand() {
+        let a = Image::from_values(UVec2::new(2, 2), vec![1_u32, 5, 3, 4]);
+        let b = Image::from_values(UVec2::new(2, 2), vec![1_u32, 2, 3, 5]);
+        let difference = Difference::between(&a, &b).unwrap();
+        assert_eq!((difference.pixels, difference.wrong_pixels, difference.max), (4, 2, 3));
+        assert!((difference.mean - 1.0).abs() < f64::EPSILON);
+        assert_eq!(difference.first[0], Place { x: 1, y: 0, a: 5, b: 2 });
+        assert_eq!(difference.first[1], Place { x: 1, y: 1, a: 4, b: 5 });
+        assert!(!difference.is_none());
+        assert!(Difference::between(&a, &a).unwrap().is_none());
+    }
+
+    #[test]
+    fn other_sizes_are_an_error() {
+        let a = Image::filled(UVec2::new(2, 3), 0_u32);
+        let b = Image::filled(UVec2::new(3, 2), 0_u32);
+        assert!(matches!(Difference::between(&a, &b), Err(Error::Mismatch { .. })));
+    }
+}

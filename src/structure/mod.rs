@@ -37,9 +37,9 @@ impl Structure {
             Method::NaiveMipmap | Method::AveragedMipmap | Method::Pyramid => {
                 Self::Mipmap(mipmap::Mipmap::new(gl, size, density, settings)?)
             }
-            Method::SummedAreaTable => Self::SummedAreaTable(summed_area_table::SummedAreaTable::new(
-                gl, size, density, settings,
-            )?),
+            Method::SummedAreaTable => {
+                Self::SummedAreaTable(summed_area_table::SummedAreaTable::new(gl, size, density, settings)?)
+            }
         })
     }
 
@@ -105,9 +105,7 @@ fn format(settings: &Settings) -> TextureFormat {
 
 /// Adds the number type of the sums.
 fn number(source: ShaderSource, settings: &Settings) -> ShaderSource {
-    source
-        .define_if(storage(settings) == Storage::F32, "SUM_F32")
-        .file(crate::gl::glsl!("common/sum.glsl"))
+    source.define_if(storage(settings) == Storage::F32, "SUM_F32").file(crate::gl::glsl!("common/sum.glsl"))
 }
 
 /// Adds access to the density map, in the number type of the sums.

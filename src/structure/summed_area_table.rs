@@ -97,9 +97,10 @@ impl SummedAreaTable {
 /// Number and stride of the passes over a side: s^0, s^1, ... below the side's length.
 fn strides(samples: SatSamples, side: u32) -> impl Iterator<Item = (u32, i32)> {
     let samples = samples.count();
-    (0..).map(move |index| (index, samples.pow(index))).take_while(move |&(_, stride)| stride < side).map(
-        |(index, stride)| (index, stride.cast_signed()),
-    )
+    (0..)
+        .map(move |index| (index, samples.pow(index)))
+        .take_while(move |&(_, stride)| stride < side)
+        .map(|(index, stride)| (index, stride.cast_signed()))
 }
 
 /// The listing for 2 samples is right; its extension to more is not.

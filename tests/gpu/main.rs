@@ -1,4 +1,6 @@
 //! The library on real contexts: EGL and OSMesa. A missing context fails the tests with the reason.
 
+#![expect(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
 mod radius;
 mod support;

@@ -1,0 +1,61 @@
+//! One file a verb: options to one library call, and its answer to a person or a machine.
+
+mod compare;
+mod devices;
+pub(crate) mod output;
+mod radius;
+mod synth;
+
+use anyhow::Result;
+use clap::{ArgAction, Parser, Subcommand};
+use tracing_subscriber::EnvFilter;
+
+/// Variable-kernel radius maps from photon density maps, exact, in OpenGL 3.3 core.
+///
+/// For each pixel of a map of photon counts: the radius of the smallest box that holds at least n photons
+/// (E. W. Bjønnes, Oslo 2010). Exit codes: 0 done, 1 the maps differ, 2 it could not be done.
+#[derive(Debug, Parser)]
+#[command(version, max_term_width = 100, arg_required_else_help = true)]
+pub(crate) struct Cli {
+    #[command(subcommand)]
+    verb: Verb,
+
+    /// Log what happens to stderr; twice for details.
+    #[arg(short, long, global = true, action = ArgAction::Count)]
+    pub(crate) verbose: u8,
+}
+
+#[derive(Debug, Subcommand)]
+enum Verb {
+    Radius(radius::Args),
+    Compare(compare::Args),
+    Synth(synth::Args),
+    Devices(devices::Args),
+}
+
+/// What a verb that did its job found.
+pub(crate) enum Outcome {
+    Done,
+    /// The answer to "are they equal?" is no.
+    Differs,
+}
+
+pub(crate) fn run(cli: Cli) -> Result<Outcome> {
+    match cli.verb {
+        Verb::Radius(args) => radius::run(&args),
+        Verb::Compare(args) => compare::run(&args),
+        Verb::Synth(args) => synth::run(&args),
+        Verb::Devices(args) => devices::run(&args),
+    }
+}
+
+/// Warnings always, more with `-v`, or as `RUST_LOG` says.
+pub(crate) fn log_to_stderr(verbose: u8) {
+    let level = match verbose {
+        0 => "warn",
+        1 => "info",
+        _ => "debug",
+    };
+    let filter = EnvFilter::try_from_default_env().unwrap_or_else(|_| EnvFilter::new(level));
+    tracing_subscriber::fmt().with_env_filter(filter).with_writer(std::io::stderr).init();
+}
