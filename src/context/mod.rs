@@ -113,6 +113,22 @@ impl Candidate {
     /// # Errors
     /// [`Error::NoContext`] with the platform's answer; [`Error::Version`] if it is older than 3.3.
     pub fn open(&self) -> Result<Gl> {
+        // SAFETY: the addresses are passed on as they are.
+        unsafe { self.open_through(|_, address| address) }
+    }
+
+    /// As [`open`](Self::open), with each command's address passed through `command` first: to count or log commands,
+    /// or to hide those outside of OpenGL 3.3 core behind null.
+    ///
+    /// # Errors
+    /// As [`open`](Self::open).
+    ///
+    /// # Safety
+    /// `command` returns null or the address of a function that behaves as the named command.
+    pub unsafe fn open_through(
+        &self,
+        mut command: impl FnMut(&CStr, *const c_void) -> *const c_void,
+    ) -> Result<Gl> {
         let guard = ThreadGuard::take()?;
         let opened: Result<Opened, String> = match &self.kind {
             #[cfg(feature = "egl")]
@@ -121,9 +137,10 @@ impl Candidate {
             Kind::OsMesa => osmesa::open(),
         };
         let Opened { context, loader } = opened.map_err(Error::NoContext)?;
-        // SAFETY: the context was just made current on this thread, the loader is its own, and `Gl` keeps it alive;
-        // `Gl` cannot leave the thread, and the guard keeps a second context of ours from taking its place.
-        unsafe { Gl::from_owned_context(Box::new((context, guard)), loader) }
+        // SAFETY: the context was just made current on this thread, the loader is its own but for what the caller
+        // vouches for, and `Gl` keeps it alive; `Gl` cannot leave the thread, and the guard keeps a second context of
+        // ours from taking its place.
+        unsafe { Gl::from_owned_context(Box::new((context, guard)), |name| command(name, loader(name))) }
     }
 }
 
