@@ -73,12 +73,12 @@ fn boxes_that_exceed_32_bits_even_clamped_are_refused() {
 #[test]
 fn f32_is_refused_past_2_to_24_and_rightly_so() {
     let gl = egl();
-    // 17.9 million photons, in boxes of far fewer.
-    let density = random_map(512, 512, 137);
+    // 262 million photons, in boxes of a million at most.
+    let density = random_map(512, 512, 2_001);
     let total: u64 = density.values().iter().map(|&count| u64::from(count)).sum();
     assert!(total > 1 << 24, "{total}");
     let settings =
-        Settings { search: search(3_000, 16, Edges::Zero), storage: Storage::F32, ..Settings::default() };
+        Settings { search: search(49_000, 16, Edges::Zero), storage: Storage::F32, ..Settings::default() };
     assert!(refused(&gl, &density, settings));
     assert!(!refused(&gl, &density, Settings { method: Method::Pyramid, ..settings }), "its boxes are small");
 
