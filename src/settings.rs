@@ -158,7 +158,7 @@ pub enum Storage {
 }
 
 /// Faults of the thesis's printed listings, each of which can be switched on (see
-/// [`structure::summed_area_table`](crate::structure) for what they are and do).
+/// [`structure`](crate::structure#as-printed) for what they do).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[expect(clippy::struct_excessive_bools, reason = "each fault can be switched on without the others")]
