@@ -5,7 +5,7 @@
 
 #![expect(unsafe_code, reason = "contexts are foreign handles; design rule 8 confines them to this module")]
 
-#[cfg(feature = "egl")]
+#[cfg(all(feature = "egl", not(target_vendor = "apple")))]
 mod egl;
 #[cfg(feature = "osmesa")]
 mod osmesa;
@@ -77,7 +77,7 @@ pub struct Candidate {
 
 #[derive(Debug)]
 enum Kind {
-    #[cfg(feature = "egl")]
+    #[cfg(all(feature = "egl", not(target_vendor = "apple")))]
     Egl(egl::Device),
     #[cfg(feature = "osmesa")]
     OsMesa,
@@ -87,9 +87,10 @@ enum Kind {
 /// are missing.
 #[must_use]
 pub fn candidates() -> (Vec<Candidate>, Vec<String>) {
-    #[cfg_attr(not(feature = "egl"), expect(unused_mut, reason = "only EGL can be missing as a platform"))]
     let (mut candidates, mut missing) = (Vec::new(), Vec::new());
-    #[cfg(feature = "egl")]
+    #[cfg(not(all(feature = "egl", not(target_vendor = "apple"))))]
+    missing.push("egl: not part of this build".to_owned());
+    #[cfg(all(feature = "egl", not(target_vendor = "apple")))]
     match egl::devices() {
         Ok(devices) => candidates.extend(devices.into_iter().map(|device| Candidate {
             choice: DeviceChoice::Egl(Some(device.index)),
@@ -98,6 +99,8 @@ pub fn candidates() -> (Vec<Candidate>, Vec<String>) {
         })),
         Err(reason) => missing.push(format!("egl: {reason}")),
     }
+    #[cfg(not(feature = "osmesa"))]
+    missing.push("osmesa: not part of this build".to_owned());
     #[cfg(feature = "osmesa")]
     candidates.push(Candidate {
         choice: DeviceChoice::OsMesa,
@@ -131,7 +134,7 @@ impl Candidate {
     ) -> Result<Gl> {
         let guard = ThreadGuard::take()?;
         let opened: Result<Opened, String> = match &self.kind {
-            #[cfg(feature = "egl")]
+            #[cfg(all(feature = "egl", not(target_vendor = "apple")))]
             Kind::Egl(device) => egl::open(device),
             #[cfg(feature = "osmesa")]
             Kind::OsMesa => osmesa::open(),
