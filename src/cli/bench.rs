@@ -177,9 +177,11 @@ fn read_map(args: &Args, map: &Path, max_side: u32) -> Result<varikernel::Image<
 
 fn parse_size(text: &str) -> Result<UVec2> {
     if text.contains('x') {
-        return super::synth::parse_size(text);
+        super::synth::parse_size(text)
+    } else {
+        let side: u32 = text.parse().context("write a side as 512, or both as 640x480")?;
+        super::synth::parse_size(&format!("{side}x{side}"))
     }
-    super::synth::parse_size(&format!("{text}x{text}")).context("write a side as 512, or both as 640x480")
 }
 
 /// Hidden where stderr is no terminal.

@@ -32,7 +32,7 @@ enum Verb {
     Compare(compare::Args),
     Synth(synth::Args),
     Devices(devices::Args),
-    Bench(bench::Args),
+    Bench(Box<bench::Args>),
 }
 
 /// What a verb that did its job found.

@@ -44,8 +44,9 @@ pub(super) fn print_report(report: &Report, json: Option<&Path>) -> Result<()> {
         output::print(&table.trim_fmt())?;
     }
     output::print(
-        "\nms: median. spread: distance of the quartiles, in parts of the median.\n\
-         copies: ms over those of a pass that reads and writes each texel once.",
+        "\nFastest first in each stage. ms: median GPU time. spread: distance of the\n\
+         quartiles in parts of the median. copies: ms over those of the copy of the same\n\
+         map. answer: whether every radius is the definition's, or how many are not.",
     )?;
     print_warnings(report)?;
     if let Some(path) = json {
@@ -75,6 +76,7 @@ fn row(run: &Run) -> [String; 8] {
 
 fn answer(run: &Run) -> String {
     let [width, height] = run.case.size;
+    #[expect(clippy::cast_precision_loss, reason = "a share is rounded anyway")]
     let share = 100.0 * run.wrong_pixels as f64 / (f64::from(width) * f64::from(height));
     if run.is_wrong() {
         "WRONG".to_owned()
@@ -96,8 +98,14 @@ fn print_warnings(report: &Report) -> Result<()> {
     let suspect: usize = report.runs.iter().map(|run| run.suspect.len()).sum();
     if suspect > 0 {
         let samples: usize = report.runs.iter().map(|run| run.samples_ms.len()).sum();
+        let cause = if report.device.software {
+            ": something else took the processor"
+        } else {
+            ", which should not be: trust these rows less"
+        };
         output::print(&format!(
-            "!: {suspect} of {samples} samples, in rows with this mark, where query and clock contradict each other"
+            "!: has some of the {suspect} in {samples} samples in which query and clock contradict each\n\
+             other{cause}"
         ))?;
     }
     // A whole map that was left out is one line.

@@ -11,9 +11,11 @@
 
 mod case;
 mod compare;
+mod files;
 mod report;
 mod runner;
 mod settings;
+mod workbench;
 
 pub use case::{Case, Stage};
 pub use compare::{ComparedRun, Comparison, Verdict, compare};

@@ -1,17 +1,16 @@
 //! What came out of a timing run, and its files.
 
 use std::fs;
-use std::io;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use super::case::{Case, Stage, edges_name, order_name};
+use super::case::{Case, Stage};
 use super::settings::{BenchSettings, MapInfo};
 use crate::error::{Error, Result};
 use crate::gl::{DeviceInfo, Sample};
-use crate::image::write_atomically;
 use crate::measure::Statistics;
+use crate::settings::Method;
 
 /// The device and the machine around it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -117,7 +116,7 @@ impl Run {
     /// Approximate methods are allowed pixels that differ.
     #[must_use]
     pub fn is_wrong(&self) -> bool {
-        self.wrong_pixels > 0 && self.case.method.is_none_or(crate::settings::Method::is_exact)
+        self.wrong_pixels > 0 && self.case.method.is_none_or(Method::is_exact)
     }
 }
 
@@ -203,49 +202,6 @@ impl Report {
         }
     }
 
-    /// Reads what [`save`](Self::save) wrote.
-    ///
-    /// # Errors
-    /// [`Error::File`] if there is no such file or it is something else.
-    pub fn load(path: &Path) -> Result<Self> {
-        let text = fs::read_to_string(path).map_err(|error| {
-            Error::file(path, format!("could not be read: {error}"), "give a file that `bench --json` wrote")
-        })?;
-        serde_json::from_str(&text).map_err(|error| {
-            Error::file(
-                path,
-                format!("is not a complete file of results: {error}"),
-                "give a file that `bench --json` of this version wrote",
-            )
-        })
-    }
-
-    /// Writes JSON, in one step.
-    ///
-    /// # Errors
-    /// As [`write_atomically`].
-    pub fn save(&self, path: &Path) -> Result<()> {
-        write_atomically(path, |file| {
-            serde_json::to_writer(&mut *file, self)?;
-            io::Write::write_all(file, b"\n")
-        })
-    }
-
-    /// Writes a row of CSV for each run, without the samples.
-    ///
-    /// # Errors
-    /// As [`write_atomically`].
-    pub fn save_csv(&self, path: &Path) -> Result<()> {
-        write_atomically(path, |file| {
-            let mut csv = csv::Writer::from_writer(file);
-            csv.write_record(CSV_COLUMNS)?;
-            for run in &self.runs {
-                csv.write_record(csv_record(run))?;
-            }
-            csv.flush()
-        })
-    }
-
     /// Refuses to go on with a report that was measured otherwise than `now` would measure.
     ///
     /// # Errors
@@ -278,62 +234,4 @@ impl Report {
             "measure into a new file, or repeat the options that this one was begun with",
         ))
     }
-}
-
-const CSV_COLUMNS: [&str; 23] = [
-    "stage",
-    "variant",
-    "search",
-    "map",
-    "width",
-    "height",
-    "min_photons",
-    "max_radius",
-    "edges",
-    "sets",
-    "samples",
-    "median_ms",
-    "mean_ms",
-    "min_ms",
-    "quartile_1_ms",
-    "quartile_3_ms",
-    "max_ms",
-    "median_wall_ms",
-    "copies",
-    "suspect",
-    "wrong_pixels",
-    "exact_method",
-    "wrong",
-];
-
-fn csv_record(run: &Run) -> [String; CSV_COLUMNS.len()] {
-    let number = |value: Option<u32>| value.map_or_else(String::new, |value| value.to_string());
-    let Case { stage, variant, map, size, method, search, min_photons, max_radius, edges, .. } = &run.case;
-    let all = &run.statistics;
-    let wall = Statistics::of(&run.wall_ms).map_or(0.0, |wall| wall.median_ms);
-    [
-        stage.name().to_owned(),
-        variant.clone(),
-        search.map_or("", order_name).to_owned(),
-        map.clone(),
-        size[0].to_string(),
-        size[1].to_string(),
-        number(*min_photons),
-        number(*max_radius),
-        edges.map_or("", edges_name).to_owned(),
-        run.sets.len().to_string(),
-        all.count.to_string(),
-        all.median_ms.to_string(),
-        all.mean_ms.to_string(),
-        all.min_ms.to_string(),
-        all.quartile_1_ms.to_string(),
-        all.quartile_3_ms.to_string(),
-        all.max_ms.to_string(),
-        wall.to_string(),
-        run.copies.map_or_else(String::new, |copies| copies.to_string()),
-        run.suspect.len().to_string(),
-        run.wrong_pixels.to_string(),
-        method.is_none_or(crate::settings::Method::is_exact).to_string(),
-        run.is_wrong().to_string(),
-    ]
 }

@@ -2,18 +2,13 @@
 
 use std::time::{Duration, Instant};
 
-use super::case::{self, Case, Stage, Work};
+use super::case::{self, Case, Work};
 use super::report::{Device, LeftOut, Report, Run};
 use super::settings::{BenchSettings, MapSource};
+use super::workbench::Workbench;
 use crate::error::{Error, Result};
-use crate::exactness::CountBounds;
-use crate::gl::{Gl, Sample, TextureFormat, Timer};
-use crate::image::Image;
-use crate::maps::DensityMap;
-use crate::measure::{Difference, Unit, UnitPass};
-use crate::pipeline::{self, RadiusPipeline};
-use crate::reference;
-use crate::settings::{Search, Settings};
+use crate::gl::{Gl, TextureFormat, Timer};
+use crate::pipeline;
 
 /// How far a run is.
 #[derive(Clone, Debug, PartialEq)]
@@ -110,7 +105,7 @@ struct Turn {
     work: Work,
     /// Time that it was given and has not used, in seconds; negative if it has used more.
     credit: f64,
-    /// Seconds that its last set took, per sample.
+    /// Seconds that its last sample took.
     cost: f64,
     left_out: bool,
 }
@@ -128,7 +123,7 @@ impl Runner<'_> {
             }
             return self.observed(&turns[0].case.to_string());
         }
-        let mut bench = match Bench::new(self.gl, self.settings, map) {
+        let mut bench = match Workbench::new(self.gl, self.settings, map) {
             Ok(bench) => bench,
             Err(error) => {
                 for turn in &mut turns {
@@ -141,8 +136,9 @@ impl Runner<'_> {
         for set in 0..self.settings.protocol.sets {
             for index in 0..turns.len() {
                 let visits_left = (self.settings.protocol.sets - set) * turns.len() - index;
-                let left = deadline.saturating_sub(self.start.elapsed()).as_secs_f64();
-                self.visit(&mut bench, &mut turns[index], left / visits_left as f64)?;
+                let left = deadline.saturating_sub(self.start.elapsed());
+                let quantum = left / u32::try_from(visits_left).unwrap_or(u32::MAX);
+                self.visit(&mut bench, &mut turns[index], quantum.as_secs_f64())?;
                 self.sets_done += 1;
                 self.observed(&turns[index].case.to_string())?;
             }
@@ -151,7 +147,7 @@ impl Runner<'_> {
     }
 
     /// Takes a set of samples of a case, if it has not enough sets and its credit reaches for a sample.
-    fn visit(&mut self, bench: &mut Bench, turn: &mut Turn, quantum: f64) -> Result<()> {
+    fn visit(&mut self, bench: &mut Workbench, turn: &mut Turn, quantum: f64) -> Result<()> {
         let sets = self.report.run(&turn.case).map_or(0, |run| run.sets.len());
         if turn.left_out || sets >= self.settings.protocol.sets {
             return Ok(());
@@ -175,8 +171,11 @@ impl Runner<'_> {
         }
         let start = Instant::now();
         let limit = self.settings.protocol.iterations;
-        let set = bench.take_set(&mut self.timer, turn, limit)?;
-        let wrong_pixels = bench.wrong_pixels(turn)?;
+        let (stage, work) = (turn.case.stage, turn.work);
+        let time = Duration::from_secs_f64(turn.credit.max(0.0));
+        let set = bench.take_set(&mut self.timer, (stage, work), limit, time)?;
+        let wrong_pixels = bench.wrong_pixels(stage, work)?;
+        turn.cost = set.last().map_or(0.0, |sample| sample.wall.as_secs_f64());
         turn.credit -= start.elapsed().as_secs_f64();
 
         let software = self.gl.info().software;
@@ -217,124 +216,4 @@ fn budget_reason(budget: Duration) -> String {
 /// An error in a table: its help is for another place.
 fn first_line(error: &Error) -> String {
     error.to_string().lines().next().unwrap_or_default().to_owned()
-}
-
-/// A map on the device, and all that was made for it.
-struct Bench {
-    gl: Gl,
-    counts: Image<u32>,
-    density: DensityMap,
-    units: Vec<(Unit, UnitPass)>,
-    pipelines: Vec<RadiusPipeline>,
-    answers: Vec<(Search, Image<u32>)>,
-}
-
-impl Bench {
-    fn new(gl: &Gl, settings: &BenchSettings, map: &MapSource) -> Result<Self> {
-        // Before the map is made: one that no texture can hold may not fit the memory either.
-        let (size, limit) = (map.size(), gl.info().max_texture_size);
-        if size.max_element() > limit {
-            return Err(Error::TooLarge { size, limit });
-        }
-        let counts = map.make();
-        assert_eq!(counts.size(), size, "a map source of another size than it says");
-        let density = DensityMap::upload(gl, &counts, CountBounds::of(&counts, settings.widest()))?;
-        Ok(Self {
-            gl: gl.clone(),
-            counts,
-            density,
-            units: Vec::new(),
-            pipelines: Vec::new(),
-            answers: Vec::new(),
-        })
-    }
-
-    /// Allocates and compiles what the work needs; none of it is timed.
-    fn prepare(&mut self, work: Work) -> Result<()> {
-        let size = self.counts.size();
-        match work {
-            Work::Unit(unit) => {
-                if !self.units.iter().any(|(known, _)| *known == unit) {
-                    self.units.push((unit, UnitPass::new(&self.gl, unit, size)?));
-                }
-            }
-            Work::Pipeline(settings) => {
-                if !self.pipelines.iter().any(|known| *known.settings() == settings) {
-                    let pipeline = RadiusPipeline::new(&self.gl, size, self.density.format(), settings)?;
-                    pipeline.plan(&self.density)?;
-                    self.pipelines.push(pipeline);
-                }
-            }
-        }
-        Ok(())
-    }
-
-    /// One untimed run, then samples until the credit is used or there are `limit`; at least one.
-    fn take_set(&mut self, timer: &mut Timer, turn: &mut Turn, limit: usize) -> Result<Vec<Sample>> {
-        let start = Instant::now();
-        let mut set = Vec::new();
-        if turn.case.stage == Stage::Search {
-            self.run_once(turn.work, Stage::Build)?;
-        }
-        self.run_once(turn.work, turn.case.stage)?;
-        loop {
-            let (work, stage) = (turn.work, turn.case.stage);
-            let ((), sample) = timer.time(|| self.run_once(work, stage))?;
-            set.push(sample);
-            turn.cost = sample.wall.as_secs_f64();
-            if set.len() >= limit || start.elapsed().as_secs_f64() + turn.cost > turn.credit {
-                return Ok(set);
-            }
-        }
-    }
-
-    fn run_once(&mut self, work: Work, stage: Stage) -> Result<()> {
-        match work {
-            Work::Unit(unit) => {
-                let (_, pass) = self.units.iter_mut().find(|(known, _)| *known == unit).expect("prepared");
-                pass.run(&self.density)
-            }
-            Work::Pipeline(settings) => {
-                let pipeline = find(&mut self.pipelines, settings);
-                match stage {
-                    Stage::Build => pipeline.build(&self.density),
-                    Stage::Search => pipeline.search(&self.density).map(drop),
-                    Stage::Copy | Stage::Probe | Stage::Frame => pipeline.render(&self.density).map(drop),
-                }
-            }
-        }
-    }
-
-    /// How many pixels of what was timed last are not as the definition has them.
-    fn wrong_pixels(&mut self, turn: &Turn) -> Result<u64> {
-        match turn.work {
-            Work::Unit(unit) => {
-                let (_, pass) = self.units.iter().find(|(known, _)| *known == unit).expect("prepared");
-                Ok(Difference::between(&pass.read()?, &unit.expected(&self.counts))?.wrong_pixels)
-            }
-            Work::Pipeline(settings) => {
-                let pipeline = find(&mut self.pipelines, settings);
-                let found = match turn.case.stage {
-                    // What was built is right if a search in it is.
-                    Stage::Build => pipeline.search(&self.density)?.read()?,
-                    _ => pipeline.radii().read()?,
-                };
-                Ok(Difference::between(&found, self.answer(settings.search))?.wrong_pixels)
-            }
-        }
-    }
-
-    /// The definition's radii.
-    fn answer(&mut self, search: Search) -> &Image<u32> {
-        let index = self.answers.iter().position(|(known, _)| *known == search).unwrap_or_else(|| {
-            let radius = reference::radius_by_table(&self.counts, search).radius;
-            self.answers.push((search, radius));
-            self.answers.len() - 1
-        });
-        &self.answers[index].1
-    }
-}
-
-fn find(pipelines: &mut [RadiusPipeline], settings: Settings) -> &mut RadiusPipeline {
-    pipelines.iter_mut().find(|known| *known.settings() == settings).expect("prepared")
 }
