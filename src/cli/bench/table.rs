@@ -13,6 +13,8 @@ use crate::cli::output;
 
 /// Columns of a terminal that tables fit into.
 const WIDTH: u16 = 80;
+/// A quiet machine's quartiles lie closer together than this part of the median.
+const QUIET: f64 = 0.2;
 
 /// A run for each section (map, size, question), fastest first within each stage; what follows says what to mind.
 pub(super) fn print_report(report: &Report, json: Option<&Path>) -> Result<()> {
@@ -106,6 +108,16 @@ fn print_warnings(report: &Report) -> Result<()> {
         output::print(&format!(
             "!: has some of the {suspect} in {samples} samples in which query and clock contradict each\n\
              other{cause}"
+        ))?;
+    }
+    let repeated = report.runs.iter().filter(|run| run.statistics.count > 1);
+    let noisy = |run: &&Run| run.statistics.spread_ms() > QUIET * run.statistics.median_ms;
+    let (noisy, repeated) = (repeated.clone().filter(noisy).count(), repeated.count());
+    if 4 * noisy > repeated {
+        output::print(&format!(
+            "noisy: {noisy} of {repeated} rows spread by more than {:.0} %;\n\
+             repeat this when nothing else runs",
+            100.0 * QUIET
         ))?;
     }
     // A whole map that was left out is one line.
