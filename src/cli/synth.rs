@@ -59,7 +59,8 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     Ok(Outcome::Done)
 }
 
-fn parse_size(text: &str) -> Result<UVec2> {
+/// 640x480, within what can be read again.
+pub(super) fn parse_size(text: &str) -> Result<UVec2> {
     let (width, height) = text.split_once('x').context("write it as 640x480")?;
     let parse = |text: &str| text.parse::<u32>().context("write it as 640x480");
     let size = UVec2::new(parse(width)?, parse(height)?);

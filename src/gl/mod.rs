@@ -19,7 +19,7 @@ pub(crate) use source::glsl;
 pub(crate) use state::StateGuard;
 pub(crate) use texture::Texture;
 pub use texture::TextureFormat;
-pub use timer::{Sample, time};
+pub use timer::{Sample, Timer, time};
 
 use std::any::Any;
 use std::ffi::{CStr, c_void};

@@ -1,7 +1,13 @@
 //! How right and how fast a result is.
 
+#[cfg(feature = "bench")]
+pub mod bench;
 mod difference;
+mod statistics;
 mod summary;
+mod unit_pass;
 
 pub use difference::{Difference, Place};
+pub use statistics::Statistics;
 pub use summary::{RadiusSummary, total_photons};
+pub use unit_pass::{Unit, UnitPass};
