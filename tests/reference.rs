@@ -1,7 +1,5 @@
 //! The definition on maps worked by hand, and what its companions count.
 
-#![expect(clippy::unwrap_used, reason = "a test that cannot go on fails")]
-
 use glam::UVec2;
 use proptest::prelude::*;
 use varikernel::Image;
