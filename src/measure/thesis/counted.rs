@@ -32,6 +32,14 @@ pub struct PyramidCost {
     pub brute_force_fetches: u64,
 }
 
+impl PyramidCost {
+    /// The deepest stack of all boxes, clipped or not.
+    #[must_use]
+    pub fn deepest_stack(&self) -> usize {
+        self.stack_depth.max(self.stack_depth_clipped)
+    }
+}
+
 /// The costs of both splitting rules for radii 1 to `max_radius`.
 #[must_use]
 pub fn pyramid_costs(max_radius: u32) -> Vec<PyramidCost> {
@@ -78,10 +86,9 @@ fn cover(inside: Inside, top_level: u32, split: Split) -> Cover {
 /// all radii of `costs` fit).
 #[must_use]
 pub fn stack_is_enough_up_to(costs: &[PyramidCost], split: Split, entries: usize) -> (u32, Option<usize>) {
-    let depth = |cost: &PyramidCost| cost.stack_depth.max(cost.stack_depth_clipped);
     let of_split = || costs.iter().filter(|cost| cost.split == split);
-    match of_split().find(|cost| depth(cost) > entries) {
-        Some(cost) => (cost.radius - 1, Some(depth(cost))),
+    match of_split().find(|cost| cost.deepest_stack() > entries) {
+        Some(cost) => (cost.radius - 1, Some(cost.deepest_stack())),
         None => (of_split().map(|cost| cost.radius).max().unwrap_or(0), None),
     }
 }
