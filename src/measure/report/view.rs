@@ -157,8 +157,7 @@ impl GroupView {
         };
         let ms = measurements.ms(quantity, row);
         let ratios = printed.iter().map(|&printed| ratio(ms, printed)).collect();
-        let printed =
-            printed.into_iter().map(|ms| ms.map(|ms| format!("{ms:.3}")).unwrap_or_default()).collect();
+        let printed = printed.into_iter().map(|ms| ms.map(as_printed).unwrap_or_default()).collect();
         Self { printed, here, ratios }
     }
 }
@@ -173,6 +172,12 @@ fn ratio(here: Option<f64>, printed: Option<f64>) -> String {
         },
         _ => String::new(),
     }
+}
+
+/// Three decimals, as the thesis prints all but one of its times.
+fn as_printed(ms: f64) -> String {
+    let (three, four) = (format!("{ms:.3}"), format!("{ms:.4}"));
+    if four.ends_with('0') { three } else { four }
 }
 
 fn milliseconds(ms: f64) -> String {
