@@ -14,7 +14,7 @@ use crate::measure::thesis::figures::Figure;
 use crate::measure::thesis::quantity::{Card, Measurements};
 use crate::measure::thesis::tables::printed_series;
 
-const SIZE: (u32, u32) = (720, 440);
+const SIZE: (u32, u32) = (600, 400);
 const FONT: &str = "sans-serif";
 const GRID: RGBColor = RGBColor(0xcc, 0xcc, 0xcc);
 /// One colour a quantity, apart in hue and lightness.
@@ -148,8 +148,8 @@ fn draw_lines<'a, Y: Ranged<ValueType = f64> + ValueFormatter<f64>>(
 ) -> Result<(), DrawingAreaErrorKind<<SVGBackend<'a> as DrawingBackend>::ErrorType>> {
     area.fill(&WHITE)?;
     // The legend has its own strip, so that it hides no line.
-    let legend_height = 20 * lines.len().div_ceil(2) as u32 + 10;
-    let (plot, legend) = area.split_vertically(SIZE.1 - legend_height);
+    let rows = u32::try_from(lines.len().div_ceil(2)).unwrap_or(u32::MAX);
+    let (plot, legend) = area.split_vertically(SIZE.1 - 20 * rows - 10);
     let mut chart = ChartBuilder::on(&plot)
         .caption(&axes.title, (FONT, 17))
         .margin(10)
@@ -198,7 +198,7 @@ fn draw_legend<'a>(
 ) -> Result<(), DrawingAreaErrorKind<<SVGBackend<'a> as DrawingBackend>::ErrorType>> {
     let column = i32::try_from(index % 2).unwrap_or(0);
     let row = i32::try_from(index / 2).unwrap_or(0);
-    let (left, middle) = (70 + column * 320, 10 + row * 20);
+    let (left, middle) = (60 + column * 270, 10 + row * 20);
     let at = (left + 14, middle);
     match line.style {
         Style::Here => {

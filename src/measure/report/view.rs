@@ -69,6 +69,7 @@ fn groups(judged: &[Judged]) -> Vec<(&'static str, Vec<&Judged>)> {
     .collect()
 }
 
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "a template passes references")]
 fn verdict_class(verdict: &Verdict) -> &'static str {
     match verdict {
         Verdict::Confirmed => "confirmed",
@@ -78,6 +79,7 @@ fn verdict_class(verdict: &Verdict) -> &'static str {
     }
 }
 
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "a template passes references")]
 fn split_name(split: &Split) -> &'static str {
     match split {
         Split::Odd => "first listing",

@@ -116,7 +116,13 @@ pub fn binary_probes(max_radius: u32) -> u32 {
 /// Passes that build a table of `side` x `side` with `samples` a pass, and the one before that copies the map.
 #[must_use]
 pub fn table_passes(side: u32, samples: u32) -> u32 {
-    1 + 2 * (0..).take_while(|&pass| u64::from(samples).pow(pass) < u64::from(side)).count() as u32
+    let mut passes = 0;
+    let mut done = 1_u64;
+    while done < u64::from(side) {
+        done *= u64::from(samples);
+        passes += 1;
+    }
+    1 + 2 * passes
 }
 
 #[cfg(test)]

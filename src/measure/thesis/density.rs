@@ -188,11 +188,9 @@ fn bisect(mut low: f64, mut high: f64, reached: impl Fn(f64) -> bool) -> f64 {
 }
 
 fn printed(quantity: Quantity, card: Card, row: u32) -> f64 {
-    printed_series(quantity, card)
-        .into_iter()
-        .find(|&(of, _)| of == row)
-        .map(|(_, ms)| ms)
-        .unwrap_or_else(|| panic!("{quantity} is printed for {row}"))
+    let series = printed_series(quantity, card);
+    let cell = series.into_iter().find(|&(of, _)| of == row);
+    cell.unwrap_or_else(|| panic!("{quantity} is printed for {row}")).1
 }
 
 fn geometric_mean(values: impl Iterator<Item = f64>) -> f64 {

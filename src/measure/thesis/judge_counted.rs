@@ -3,6 +3,7 @@
 use super::claims::{Evidence, Judgement, LargerSmaller, Verdict};
 use super::counted::{self, PyramidCost};
 use super::{density, example};
+use crate::measure::Difference;
 use crate::settings::Split;
 
 /// The answer to a claim of [`Group::Counted`](super::claims::Group); nothing if `id` is none.
@@ -120,14 +121,21 @@ pub(super) fn listing(id: &str, evidence: &Evidence) -> Option<Judgement> {
         ),
         _ => return None,
     };
-    let Some(row) = evidence.faults.iter().find(|row| row.fault == fault) else {
+    let rows: Vec<_> = evidence.faults.iter().filter(|row| row.fault == fault).collect();
+    if rows.is_empty() {
         return Some(Judgement::untested("no map was looked at"));
-    };
-    let difference = &row.difference;
-    let wrong = difference.wrong_pixels;
-    let verdict = if wrong == 0 { Verdict::HoldsHereOnly } else { Verdict::Refuted };
-    let ours = format!("{wrong} of {} pixels wrong, by at most {}", difference.pixels, difference.max);
-    Some(Judgement::new(verdict, ours, format!("{harmless} Map: {}.", evidence.map)))
+    }
+    let wrong = rows.iter().any(|row| !row.difference.is_none());
+    let ours: Vec<String> = rows
+        .iter()
+        .map(|row| {
+            let Difference { pixels, wrong_pixels, max, .. } = row.difference;
+            format!("{}: {wrong_pixels} of {pixels} pixels wrong, by at most {max}", row.map)
+        })
+        .collect();
+    // Right on these maps is not right.
+    let verdict = if wrong { Verdict::Refuted } else { Verdict::HoldsHereOnly };
+    Some(Judgement::new(verdict, ours.join("; "), harmless))
 }
 
 const SPLITS: [(Split, &str); 2] = [(Split::Odd, "first listing"), (Split::Larger, "second listing")];
@@ -172,16 +180,19 @@ fn stack(evidence: &Evidence) -> Judgement {
         SPLITS.iter().map(|&(split, name)| format!("{name}: up to radius {}", of(split).0)).collect();
     let needed: Vec<String> = SPLITS
         .iter()
-        .filter_map(|&(split, name)| Some(format!("{name} needs {} from there", of(split).1?)))
+        .filter_map(|&(split, name)| {
+            let (radius, depth) = of(split);
+            Some(format!("{name}: {} at radius {}", depth?, radius + 1))
+        })
         .collect();
     let cases: Vec<bool> = SPLITS.iter().flat_map(|&(split, _)| [true, of(split).1.is_none()]).collect();
     Judgement::by_cases(
         &cases,
         ours.join("; "),
         format!(
-            "All places, clipped boxes included, up to MR = {}. {}",
+            "All places, clipped boxes included, up to MR = {}. Needed: {}.",
             counted::MAX_RADIUS,
-            needed.join("; ")
+            if needed.is_empty() { "no more".to_owned() } else { needed.join("; ") }
         ),
     )
 }

@@ -236,18 +236,14 @@ fn crossing(orders: &[OrderPoint]) -> Judgement {
     let ahead = |point: &OrderPoint| point.binary_ms / point.forward_ms - 1.0;
     let span = format!("from mean radius {:.1} to {:.1}", first.mean_radius, last.mean_radius);
     let pair = points.windows(2).find(|pair| ahead(&pair[0]) > 0.0 && ahead(&pair[1]) <= 0.0);
-    match pair {
-        Some([before, after]) => {
-            let share = ahead(before) / (ahead(before) - ahead(after));
-            let at = before.mean_radius + share * (after.mean_radius - before.mean_radius);
-            let ours = format!("binary overtakes forward at a mean radius of {at:.1}");
-            Judgement::new(Verdict::Confirmed, ours, format!("{span}; by counted probes it would be 5."))
-        }
-        _ => {
-            let winner = if ahead(first) > 0.0 { "forward" } else { "binary" };
-            Judgement::new(Verdict::Refuted, format!("{winner} wins at every density"), span)
-        }
+    if let Some([before, after]) = pair {
+        let share = ahead(before) / (ahead(before) - ahead(after));
+        let at = before.mean_radius + share * (after.mean_radius - before.mean_radius);
+        let ours = format!("binary overtakes forward at a mean radius of {at:.1}");
+        return Judgement::new(Verdict::Confirmed, ours, format!("{span}; by counted probes it would be 5."));
     }
+    let winner = if ahead(first) > 0.0 { "forward" } else { "binary" };
+    Judgement::new(Verdict::Refuted, format!("{winner} wins at every density"), span)
 }
 
 fn densities(orders: &[OrderPoint]) -> Judgement {
