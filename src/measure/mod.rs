@@ -3,8 +3,12 @@
 #[cfg(feature = "bench")]
 pub mod bench;
 mod difference;
+#[cfg(feature = "report")]
+pub mod report;
 mod statistics;
 mod summary;
+#[cfg(feature = "report")]
+pub mod thesis;
 mod unit_pass;
 
 pub use difference::{Difference, Place};
