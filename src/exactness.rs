@@ -16,27 +16,38 @@ use glam::UVec2;
 
 use crate::error::{Error, Result};
 use crate::image::Image;
-use crate::settings::{Exactness, Method, Search, Settings, Storage};
+use crate::settings::{Exactness, Faults, Method, Search, Settings, Storage};
 
-/// Upper bounds for the sums in a density map; what is not known is [`u64::MAX`].
+/// Upper bounds for the sums in a density map, and the question that they were found for; what is not known is
+/// [`u64::MAX`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CountBounds {
     /// The sum of all counts.
     pub total: u64,
-    /// The sum of any box of radius MR.
+    /// The sum of any box of [`max_radius`](Self::max_radius).
     pub densest_box: u64,
-    /// The sum of any box of radius MR with each count clamped to n.
+    /// The same with each count clamped to [`min_photons`](Self::min_photons).
     pub densest_clamped_box: u64,
+    /// The largest radius that the boxes' bounds hold for; the total bounds larger ones.
+    pub max_radius: u32,
+    /// The largest n that the clamped bound holds for.
+    pub min_photons: u32,
 }
 
 impl CountBounds {
     /// Nothing is known: only n and MR can prove exactness.
-    pub const UNKNOWN: Self = Self { total: u64::MAX, densest_box: u64::MAX, densest_clamped_box: u64::MAX };
+    pub const UNKNOWN: Self = Self::total_at_most(u64::MAX);
 
     /// At most `total` photons are in the map: a host knows how many it has drawn.
     #[must_use]
-    pub fn total_at_most(total: u64) -> Self {
-        Self { total, densest_box: total, densest_clamped_box: total }
+    pub const fn total_at_most(total: u64) -> Self {
+        Self {
+            total,
+            densest_box: total,
+            densest_clamped_box: total,
+            max_radius: u32::MAX,
+            min_photons: u32::MAX,
+        }
     }
 
     /// The bounds of `density` itself; boxes are looked at only where the total does not settle it.
@@ -54,7 +65,24 @@ impl CountBounds {
         } else {
             densest(&density.map(|count| count.min(search.min_photons)))
         };
-        Self { total, densest_box, densest_clamped_box }
+        let Search { max_radius, min_photons, .. } = search;
+        Self { total, densest_box, densest_clamped_box, max_radius, min_photons }
+    }
+
+    /// The bound for any box that `settings` can ask for.
+    fn box_of(&self, settings: &Settings) -> u64 {
+        // The naive mipmap's last block is larger than a box of MR.
+        let holds = settings.search.max_radius <= self.max_radius && settings.method != Method::NaiveMipmap;
+        if holds { self.densest_box.min(self.total) } else { self.total }
+    }
+
+    /// The same with each count clamped to n.
+    fn clamped_box_of(&self, settings: &Settings) -> u64 {
+        let Search { max_radius, min_photons, .. } = settings.search;
+        let holds = max_radius <= self.max_radius
+            && min_photons <= self.min_photons
+            && settings.method != Method::NaiveMipmap;
+        if holds { self.densest_clamped_box } else { u64::MAX }
     }
 }
 
@@ -76,27 +104,29 @@ pub struct Plan {
 /// # Errors
 /// [`Error::Inexact`] where [`Exactness::Required`] cannot be had.
 pub fn plan(settings: &Settings, size: UVec2, bounds: CountBounds) -> Result<Plan> {
-    let faultless = settings.faults == crate::settings::Faults::NONE;
+    let faultless = settings.reaching_faults() == Faults::NONE;
     let unclamped = Plan { count_limit: u32::MAX, exact: settings.method.is_exact() && faultless };
     let inexact = |reason: String, remedy: &str| match settings.exactness {
         Exactness::Required => Err(Error::Inexact { reason, remedy: remedy.to_owned() }),
         Exactness::Waived => Ok(Plan { exact: false, ..unclamped }),
     };
     let search = settings.search;
+    let densest_box = bounds.box_of(settings);
     match (settings.method, settings.storage) {
         (Method::AveragedMipmap, _) => Ok(unclamped),
         (_, Storage::U32) => {
             let clamped_by_n = largest_area(settings, size) * u64::from(search.min_photons);
-            if bounds.densest_box.min(bounds.total) <= U32_MAX {
+            let clamped_box = clamped_by_n.min(bounds.clamped_box_of(settings));
+            if densest_box <= U32_MAX {
                 Ok(unclamped)
-            } else if clamped_by_n.min(bounds.densest_clamped_box) <= U32_MAX {
+            } else if clamped_box <= U32_MAX {
                 Ok(Plan { count_limit: search.min_photons, ..unclamped })
             } else {
                 inexact(
                     format!(
                         "a box of radius {} may hold {} photons, and 32-bit sums end at {U32_MAX}",
                         search.max_radius,
-                        known(bounds.densest_clamped_box)
+                        known(clamped_box.min(densest_box))
                     ),
                     "lower n or MR, or scale the counts down",
                 )
@@ -107,18 +137,18 @@ pub fn plan(settings: &Settings, size: UVec2, bounds: CountBounds) -> Result<Pla
                 "a table in f32 is exact up to {F32_MAX} photons in all, and the map may hold {}",
                 known(bounds.total)
             ),
-            "keep the table in u32",
+            "keep the table in u32 (storage u32)",
         ),
         (Method::BruteForce | Method::NaiveMipmap | Method::Pyramid, Storage::F32)
-            if bounds.densest_box > F32_MAX =>
+            if densest_box > F32_MAX =>
         {
             inexact(
                 format!(
                     "sums in f32 are exact up to {F32_MAX}, and a box of radius {} may hold {} photons",
                     search.max_radius,
-                    known(bounds.densest_box)
+                    known(densest_box)
                 ),
-                "keep the sums in u32",
+                "keep the sums in u32 (storage u32)",
             )
         }
         (_, Storage::F32) => Ok(unclamped),

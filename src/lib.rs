@@ -46,7 +46,7 @@
 //! | [`pipeline`] | the stages in order; what a host calls |
 //! | `radius` | density map and structure in, radius map out |
 //! | [`structure`] | brute force, mipmaps, pyramid, summed-area table: a section of the thesis each |
-//! | `loop_limit` | what llvmpipe would silently cut short |
+//! | `driver_limits` | what software renderers would silently get wrong |
 //! | [`maps`] | what flows between the stages, each with its unit |
 //! | [`exactness`] | which sums fit which storage, decided before computing |
 //! | [`reference`](mod@reference) | the definition: the same in plain Rust, without OpenGL |
@@ -61,12 +61,12 @@
 //! - the current program, vertex array, draw and read framebuffer, and the viewport;
 //! - the active texture unit, and the 2D texture and the sampler of units 0 to 3;
 //! - blending and the colour mask of draw buffers 0 and 1;
-//! - face culling, scissor test, logic operation, rasteriser discard, clip distances 0 to 7, polygon mode;
+//! - face culling, scissor test, logic operation, rasteriser discard, primitive restart, clip distances 0 to 7, polygon mode;
 //! - the pixel pack and unpack buffers, and alignment, row length, skips and byte swapping of both.
 //!
 //! Nothing else is touched. GL errors that were pending are taken and logged, so that they are not blamed on the call. A host
-//! may not call while transform feedback or conditional rendering is active, which would swallow the draws. Objects
-//! may be dropped in any order while the context is current.
+//! may not call while transform feedback or conditional rendering is active, which would swallow the draws; a host's own
+//! queries (samples passed, time elapsed) count our work as well. Objects may be dropped in any order while the context is current.
 //!
 //! # Glossary
 //! | word | meaning |
@@ -83,11 +83,11 @@
 
 #[cfg(any(feature = "egl", feature = "osmesa"))]
 pub mod context;
+mod driver_limits;
 pub mod error;
 pub mod exactness;
 pub mod gl;
 pub mod image;
-mod loop_limit;
 pub mod maps;
 pub mod measure;
 pub mod pipeline;
@@ -97,6 +97,8 @@ pub mod settings;
 pub mod structure;
 #[cfg(feature = "synth")]
 pub mod synth;
+
+pub use {glam, glow};
 
 pub use error::{Error, Result};
 pub use exactness::CountBounds;

@@ -7,9 +7,10 @@ use crate::exactness::CountBounds;
 use crate::gl::{Gl, StateGuard, Target, Texture, TextureFormat};
 use crate::image::Image;
 
-/// Photons per pixel: a GL_R32UI texture, or a GL_R32F one as additive blending of points fills it.
+/// Photons per pixel: a GL_R32UI or GL_R8UI texture, or a GL_R32F one as additive blending of points fills it.
 ///
 /// Values are whole and not negative; in GL_R32F they are exact up to 2^24 a pixel, where adding 1 stops to count.
+/// Of a fraction the whole part counts; NaN counts as anything.
 #[derive(Debug)]
 pub struct DensityMap {
     texture: Texture,
@@ -29,13 +30,15 @@ impl DensityMap {
         Ok(Self { texture, bounds })
     }
 
-    /// Uses a texture that the host owns and keeps alive as long as this.
+    /// Uses a texture that the host owns and keeps alive as long as this; its contents may change between frames, but
+    /// after a new glTexImage2D it has to be borrowed again.
     ///
     /// `bounds` says what the host knows of its counts; with [`CountBounds::UNKNOWN`] a result is refused unless n
     /// and MR alone prove it exact.
     ///
     /// # Errors
-    /// [`Error::Mismatch`](crate::Error::Mismatch) unless it is a GL_TEXTURE_2D in GL_R32UI, GL_R32F or GL_R8UI.
+    /// [`Error::Mismatch`](crate::Error::Mismatch) unless it is a GL_TEXTURE_2D in GL_R32UI, GL_R32F or GL_R8UI, with
+    /// level 0 as its base and red where red belongs.
     pub fn borrow(gl: &Gl, texture: glow::Texture, bounds: CountBounds) -> Result<Self> {
         let _state = StateGuard::new(gl);
         Ok(Self { texture: Texture::borrow(gl, texture)?, bounds })
@@ -80,7 +83,9 @@ impl RadiusMap {
         Ok(Self { target: Target::new(gl, textures)? })
     }
 
-    /// The texture of radii, to bind in the host's own shaders as a `usampler2D`; valid as long as this.
+    /// The texture of radii, to bind in the host's own shaders as a `usampler2D`.
+    ///
+    /// Ask after each frame: where a search takes several passes, two textures take turns.
     #[must_use]
     pub fn texture(&self) -> glow::Texture {
         self.target.texture().name()
@@ -116,6 +121,10 @@ impl RadiusMap {
 
     pub(crate) fn target(&mut self) -> &mut Target {
         &mut self.target
+    }
+
+    pub(crate) fn is_written_to(&self, name: glow::Texture) -> bool {
+        self.target.textures().iter().any(|texture| texture.name() == name)
     }
 
     pub(crate) fn as_texture(&self) -> &Texture {

@@ -2,10 +2,10 @@
 
 use glam::UVec2;
 
+use crate::driver_limits;
 use crate::error::{Error, Result};
 use crate::exactness::{self, Plan};
 use crate::gl::{Gl, ShaderSource, StateGuard, TextureFormat};
-use crate::loop_limit;
 use crate::maps::{DensityMap, RadiusMap};
 use crate::radius::{self, Continued, RadiusSearch};
 use crate::settings::{Method, Order, Settings};
@@ -24,6 +24,8 @@ pub struct RadiusPipeline {
     density_format: TextureFormat,
     structure: Structure,
     search: RadiusSearch,
+    /// The map that the structure was built from.
+    built: Option<glow::Texture>,
 }
 
 impl RadiusPipeline {
@@ -34,13 +36,19 @@ impl RadiusPipeline {
     /// shader, [`Error::Gl`] when memory runs out.
     pub fn new(gl: &Gl, size: UVec2, density_format: TextureFormat, settings: Settings) -> Result<Self> {
         settings.validate()?;
-        let passes = loop_limit::passes(gl.info(), &settings)?;
+        let passes = driver_limits::passes(gl.info(), &settings)?;
         let limit = gl.info().max_texture_size;
-        if size.max_element() > limit || size.min_element() == 0 {
+        if size.max_element() > limit {
             return Err(Error::TooLarge { size, limit });
         }
+        if size.min_element() == 0 {
+            return Err(Error::Setting {
+                name: "size",
+                value: format!("{} x {}", size.x, size.y),
+                reason: "a map has at least one pixel".to_owned(),
+            });
+        }
         let _state = StateGuard::new(gl);
-        gl.forget_errors();
         let pipeline = Self {
             gl: gl.clone(),
             settings,
@@ -48,6 +56,7 @@ impl RadiusPipeline {
             density_format,
             structure: Structure::new(gl, size, density_format, &settings)?,
             search: RadiusSearch::new(gl, size, density_format, &settings, passes)?,
+            built: None,
         };
         gl.check("setting up a radius pipeline")?;
         Ok(pipeline)
@@ -72,19 +81,27 @@ impl RadiusPipeline {
         self.check(density)?;
         let plan = self.plan(density)?;
         let _state = StateGuard::new(&self.gl);
-        self.gl.forget_errors();
+        self.built = None;
         self.structure.build(density, plan)?;
-        self.gl.check("building the intermediate structure")
+        self.gl.check("building the intermediate structure")?;
+        self.built = Some(density.texture().name());
+        Ok(())
     }
 
     /// Searches the structure that [`build`](Self::build) last filled, from the same map.
     ///
     /// # Errors
-    /// As [`render`](Self::render).
+    /// As [`render`](Self::render), and [`Error::Mismatch`] if the structure was not built from this map.
     pub fn search(&mut self, density: &DensityMap) -> Result<&RadiusMap> {
         self.check(density)?;
+        if self.built != Some(density.texture().name()) {
+            return Err(Error::Mismatch {
+                what: "density map of the search",
+                expected: "the one that was built last".to_owned(),
+                got: "another, or none was built".to_owned(),
+            });
+        }
         let _state = StateGuard::new(&self.gl);
-        self.gl.forget_errors();
         self.search.estimate(density, &self.structure)?;
         self.gl.check("searching radii")?;
         Ok(self.search.radii())
@@ -118,6 +135,13 @@ impl RadiusPipeline {
                 what: "density map",
                 expected: describe(self.size, self.density_format),
                 got: describe(density.size(), density.format()),
+            });
+        }
+        if self.search.radii().is_written_to(density.texture().name()) {
+            return Err(Error::Mismatch {
+                what: "density map",
+                expected: "a texture of the host".to_owned(),
+                got: "the pipeline's own output".to_owned(),
             });
         }
         Ok(())

@@ -281,6 +281,25 @@ impl Settings {
         Self { matching: Matching::Modulo, storage: Storage::F32, ..Self::default() }
     }
 
+    /// The faults that these settings let into the computation: those of the method and the edge rule in use.
+    #[must_use]
+    pub fn reaching_faults(&self) -> Faults {
+        let in_table = self.method == Method::SummedAreaTable;
+        let faults = self.faults;
+        Faults {
+            clamp_to_63: faults.clamp_to_63 && in_table,
+            border_test: faults.border_test && in_table,
+            corner_test: faults.corner_test && in_table,
+            swapped_axes: faults.swapped_axes && in_table,
+            // The listing for 2 samples is right; its extension to more is not.
+            sample_stride: faults.sample_stride && in_table && self.sat_samples > SatSamples::Two,
+            forgotten_strip: faults.forgotten_strip
+                && matches!(self.method, Method::Pyramid | Method::AveragedMipmap)
+                && self.split == Split::Odd,
+            float_ratio: faults.float_ratio && self.search.edges == Edges::Scale,
+        }
+    }
+
     /// Checks every range.
     ///
     /// # Errors

@@ -22,9 +22,9 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("exactness", &["reference"]),
     ("maps", &["exactness", "gl"]),
     ("structure", &["exactness", "gl", "maps"]),
-    ("loop_limit", &["gl", "structure"]),
+    ("driver_limits", &["gl", "structure"]),
     ("radius", &["exactness", "gl", "maps", "structure"]),
-    ("pipeline", &["exactness", "gl", "loop_limit", "maps", "radius", "structure"]),
+    ("pipeline", &["exactness", "gl", "driver_limits", "maps", "radius", "structure"]),
     ("measure", &["exactness", "gl", "maps", "pipeline", "reference", "synth"]),
 ];
 const OPEN_TO_ALL: [&str; 3] = ["error", "image", "settings"];
@@ -64,7 +64,11 @@ fn named_rooms(code: &str) -> BTreeSet<String> {
         text.chars().take_while(|letter| letter.is_alphanumeric() || *letter == '_').collect::<String>()
     };
     let named = code.split("crate::").skip(1).flat_map(|after| match after.strip_prefix('{') {
-        Some(group) => group.split('}').next().unwrap().split(',').map(|name| word(name.trim())).collect(),
+        Some(group) => {
+            let group = group.split('}').next().unwrap();
+            assert!(!group.contains('{'), "one level of braces is all that is read here: {group}");
+            group.split(',').map(|name| word(name.trim())).collect()
+        }
         None => vec![word(after)],
     });
     named.filter(|name| name.starts_with(char::is_lowercase)).collect()

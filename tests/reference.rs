@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use varikernel::Image;
 use varikernel::reference::{self, Inside, Table, pyramid, radius, radius_by_table};
 use varikernel::settings::{Edges, Faults, Order, SatSamples, Search, Split};
-use varikernel::structure::stack_size;
+use varikernel::structure::{most_blocks, stack_size};
 
 fn search(min_photons: u32, max_radius: u32, edges: Edges) -> Search {
     Search { min_photons, max_radius, edges, order: Order::Binary }
@@ -119,6 +119,8 @@ fn fetches_are_those_of_the_thesis_where_it_counts_them() {
     assert_eq!(fetches(8, Split::Larger), (34, 94));
     assert_eq!(fetches(1, Split::Larger), (6, 9));
     assert_eq!(fetches(2, Split::Larger), (10, 19));
+    assert_eq!(fetches(32, Split::Odd), (130, 1153));
+    assert_eq!(fetches(32, Split::Larger), (130, 436));
 }
 
 #[test]
@@ -128,7 +130,7 @@ fn a_cover_is_a_partition_and_fits_the_stack_and_the_bound() {
         let mut deepest = [0; 18];
         for (width, height) in (1..=17_u32).flat_map(|w| (1..=17).map(move |h| (w, h))) {
             let side = width.max(height);
-            let max_radius = side.div_ceil(2).max(1);
+            let max_radius = (side / 2).max(1);
             for lo in (0..16).flat_map(|y| (0..16).map(move |x| UVec2::new(x, y))) {
                 let inside = Inside { lo, hi: lo + UVec2::new(width, height) - 1 };
                 let cover = pyramid::cover(inside, side.ilog2(), split, Faults::NONE);
@@ -139,6 +141,7 @@ fn a_cover_is_a_partition_and_fits_the_stack_and_the_bound() {
                 };
                 assert!(cover.blocks.iter().all(is_inside), "{inside:?}");
                 assert!(cover.stack_depth <= stack_size(max_radius) as usize, "{inside:?}");
+                assert!(cover.blocks.len() as u64 <= most_blocks(max_radius), "{inside:?}");
                 deepest[side as usize] = cover.stack_depth.max(deepest[side as usize]);
             }
         }
@@ -157,10 +160,31 @@ fn the_deepest_boxes_of_larger_radii_fit_the_stack() {
                     let inside = Inside { lo, hi: lo + UVec2::new(side, height) - 1 };
                     let cover = pyramid::cover(inside, side.ilog2(), split, Faults::NONE);
                     assert!(cover.stack_depth <= stack_size(side / 2) as usize, "{split:?} {inside:?}");
+                    assert!(cover.blocks.len() as u64 <= most_blocks(side / 2), "{split:?} {inside:?}");
                 }
             }
         }
     }
+}
+
+#[test]
+fn the_costliest_oblong_boxes_stay_below_the_bound() {
+    // Found by search: half as wide as high, from a corner that fits few levels.
+    for (width, side, lo) in [
+        (35, 65, UVec2::new(7, 14)),
+        (36, 65, UVec2::new(27, 3)),
+        (131, 255, UVec2::new(23, 0)),
+        (132, 257, UVec2::new(23, 0)),
+    ] {
+        for split in [Split::Odd, Split::Larger] {
+            let inside = Inside { lo, hi: lo + UVec2::new(width, side) - 1 };
+            let blocks = pyramid::cover(inside, side.ilog2(), split, Faults::NONE).blocks.len() as u64;
+            assert!(blocks <= most_blocks(side / 2), "{split:?} {inside:?}: {blocks}");
+        }
+    }
+    let widest = Inside { lo: UVec2::new(23, 0), hi: UVec2::new(153, 254) };
+    let blocks = pyramid::cover(widest, 7, Split::Larger, Faults::NONE).blocks.len();
+    assert_eq!(blocks, 17_292, "the larger rule grows with the area there");
 }
 
 #[test]

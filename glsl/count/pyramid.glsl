@@ -7,7 +7,7 @@ SUM block_sum(ivec2 block, int level)
     SUM texel = texelFetch(pyramid, block, level).r;
 #ifdef AVERAGED
     // 3.3: the average of 2^l by 2^l pixels times their number.
-    texel *= exp2(float(2 * level));
+    texel *= float(1 << (2 * level));
 #endif
     return texel;
 }

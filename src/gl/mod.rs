@@ -65,7 +65,7 @@ pub struct DeviceInfo {
     pub glsl_version: String,
     /// Whether the renderer's name is that of a software renderer (llvmpipe, softpipe, swrast, SwiftShader).
     pub software: bool,
-    /// GL_MAX_TEXTURE_SIZE: the longest side of a map, in pixels.
+    /// The longest side of a map, in pixels: GL_MAX_TEXTURE_SIZE, or GL_MAX_VIEWPORT_DIMS where that is less.
     pub max_texture_size: u32,
     /// GL_MAX_DRAW_BUFFERS: render targets of one pass.
     pub max_draw_buffers: u32,
@@ -77,7 +77,13 @@ impl DeviceInfo {
     /// Whether this is llvmpipe, whose GL_TIME_ELAPSED needs a glFinish to be true.
     #[must_use]
     pub fn is_llvmpipe(&self) -> bool {
-        self.renderer.contains("llvmpipe")
+        self.renderer.to_lowercase().contains("llvmpipe")
+    }
+
+    /// Whether this is softpipe, Mesa's interpreter.
+    #[must_use]
+    pub fn is_softpipe(&self) -> bool {
+        self.renderer.to_lowercase().contains("softpipe")
     }
 }
 
@@ -211,6 +217,24 @@ impl Gl {
         mask.map(|value| value != 0)
     }
 
+    /// Whether draw buffer `index` blends.
+    fn is_blending(&self, index: u32) -> bool {
+        let mut blends = 0_u8;
+        match self.inner.get_booleani_v {
+            // SAFETY: GL_BLEND has one value for each draw buffer.
+            Some(get) => unsafe { get(glow::BLEND, index, &raw mut blends) },
+            // SAFETY: the context is current; OpenGL converts the value.
+            None => return unsafe { self.glow().get_parameter_indexed_i32(glow::BLEND, index) } != 0,
+        }
+        blends != 0
+    }
+
+    /// Whether a buffer can be bound that takes the results of queries: OpenGL 4.4.
+    fn has_query_buffers(&self) -> bool {
+        let version = self.glow().version();
+        (version.major, version.minor) >= (4, 4)
+    }
+
     /// The oldest pending GL error as our error, if there is one.
     ///
     /// # Errors
@@ -303,6 +327,9 @@ fn device_info(glow: &glow::Context) -> DeviceInfo {
     unsafe {
         let text = |name| glow.get_parameter_string(name);
         let limit = |name| u32::try_from(glow.get_parameter_i32(name)).unwrap_or(0);
+        let mut viewport = [0; 2];
+        glow.get_parameter_i32_slice(glow::MAX_VIEWPORT_DIMS, &mut viewport);
+        let largest_viewport = u32::try_from(viewport[0].min(viewport[1])).unwrap_or(0);
         let renderer = text(glow::RENDERER);
         let software =
             ["llvmpipe", "softpipe", "swrast", "SwiftShader"].iter().any(|name| renderer.contains(name));
@@ -312,7 +339,7 @@ fn device_info(glow: &glow::Context) -> DeviceInfo {
             version: text(glow::VERSION),
             glsl_version: text(glow::SHADING_LANGUAGE_VERSION),
             software,
-            max_texture_size: limit(glow::MAX_TEXTURE_SIZE),
+            max_texture_size: limit(glow::MAX_TEXTURE_SIZE).min(largest_viewport),
             max_draw_buffers: limit(glow::MAX_DRAW_BUFFERS),
             max_texture_units: limit(glow::MAX_TEXTURE_IMAGE_UNITS),
         }

@@ -12,11 +12,13 @@ pub(super) const UNITS: u32 = 4;
 /// Draw buffers that passes use.
 pub(super) const DRAW_BUFFERS: u32 = 2;
 
-const CAPABILITIES: [u32; 12] = [
+const CAPABILITIES: [u32; 13] = [
     glow::CULL_FACE,
     glow::SCISSOR_TEST,
     glow::COLOR_LOGIC_OP,
     glow::RASTERIZER_DISCARD,
+    // Before OpenGL 4.3 it was not clear that drawing without indices is not restarted.
+    glow::PRIMITIVE_RESTART,
     glow::CLIP_DISTANCE0,
     glow::CLIP_DISTANCE1,
     glow::CLIP_DISTANCE2,
@@ -63,6 +65,7 @@ pub(crate) struct StateGuard {
 impl StateGuard {
     /// Saves the host's state and sets what every pass and transfer relies on.
     pub(crate) fn new(gl: &Gl) -> Self {
+        gl.forget_errors();
         let guard = Self::save(gl);
         // SAFETY: the context is current while the handle lives.
         unsafe {
@@ -111,7 +114,7 @@ impl StateGuard {
                 }),
                 draw_buffers: std::array::from_fn(|index| {
                     let index = u32::try_from(index).expect("few draw buffers");
-                    (glow.get_parameter_indexed_i32(glow::BLEND, index) != 0, gl.color_mask(index))
+                    (gl.is_blending(index), gl.color_mask(index))
                 }),
                 capabilities: CAPABILITIES.map(|capability| glow.is_enabled(capability)),
                 polygon_mode: polygon_mode[0].cast_unsigned(),

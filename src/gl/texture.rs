@@ -132,8 +132,7 @@ impl Texture {
         let glow = gl.glow();
         // SAFETY: the context is current while the handle lives; a name of another target is an error that is
         // asked for at once.
-        let (internal, size, base) = unsafe {
-            gl.forget_errors();
+        let (internal, size, base, red) = unsafe {
             glow.active_texture(glow::TEXTURE0);
             glow.bind_texture(glow::TEXTURE_2D, Some(name));
             let code = glow.get_error();
@@ -147,6 +146,7 @@ impl Texture {
                 level(glow::TEXTURE_INTERNAL_FORMAT).cast_unsigned(),
                 UVec2::new(side(glow::TEXTURE_WIDTH), side(glow::TEXTURE_HEIGHT)),
                 glow.get_tex_parameter_i32(glow::TEXTURE_2D, glow::TEXTURE_BASE_LEVEL),
+                glow.get_tex_parameter_i32(glow::TEXTURE_2D, glow::TEXTURE_SWIZZLE_R),
             )
         };
         if size.min_element() == 0 {
@@ -159,6 +159,9 @@ impl Texture {
         };
         if base != 0 {
             return Err(mismatch("GL_TEXTURE_BASE_LEVEL 0".to_owned(), base.to_string()));
+        }
+        if red.cast_unsigned() != glow::RED {
+            return Err(mismatch("GL_TEXTURE_SWIZZLE_R GL_RED".to_owned(), format!("{red:#06x}")));
         }
         Ok(Self { gl: gl.clone(), name, format, size, levels: 1, ours: false })
     }

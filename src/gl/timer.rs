@@ -82,7 +82,9 @@ impl Timer {
                 frame.clear();
             }
             glow.finish();
+            self.gl.check("preparing a time query")?;
             glow.begin_query(glow::TIME_ELAPSED, self.query);
+            self.gl.check("beginning a time query; one of the host's may be running")?;
             if let Some(frame) = &self.llvmpipe_frame {
                 frame.clear();
                 glow.finish();
@@ -91,14 +93,23 @@ impl Timer {
         let start = Instant::now();
         let result = work();
         let mut nanoseconds = 0_u64;
-        // SAFETY: no query buffer is bound in a 3.3 context, so the "offset" is the address of the result.
-        // (glow's plain reader of u64 wants a 4.5 command.)
+        // SAFETY: no query buffer is bound, so the "offset" is the address of the result. (glow's plain reader of u64
+        // wants a 4.5 command.)
         let wall = unsafe {
             glow.end_query(glow::TIME_ELAPSED);
             glow.finish();
             let wall = start.elapsed();
             let address = (&raw mut nanoseconds).expose_provenance();
+            // A host's context may be newer than 3.3 and hold one.
+            let query_buffer = self.gl.has_query_buffers().then(|| {
+                let bound = glow.get_parameter_buffer(glow::QUERY_BUFFER_BINDING);
+                glow.bind_buffer(glow::QUERY_BUFFER, None);
+                bound
+            });
             glow.get_query_parameter_u64_with_offset(self.query, glow::QUERY_RESULT, address);
+            if let Some(bound) = query_buffer {
+                glow.bind_buffer(glow::QUERY_BUFFER, bound);
+            }
             wall
         };
         let result = result?;

@@ -18,7 +18,8 @@
 //! | `float_ratio` | 4.4: outside over inside area, in f32 | S T >= n I | wrong for the rare n at which rounding decides: 1875 and 1925 of the first 2000, at MR 32 |
 //!
 //! The first five are of 4.2. Alone, `corner_test` only adds reads outside of the table, which do nothing. What each
-//! fault gives is predicted by [`reference::as_printed`](crate::reference::as_printed).
+//! fault gives is predicted by [`reference::as_printed`](crate::reference::as_printed), the last one where the driver
+//! divides as IEEE 754 does, which GLSL does not promise.
 
 mod brute_force;
 mod mipmap;
@@ -33,8 +34,8 @@ use crate::gl::{Gl, Pass, ShaderSource, TextureFormat};
 use crate::maps::DensityMap;
 use crate::settings::{Method, Settings, Storage};
 
-pub use pyramid::stack_size;
-pub(crate) use pyramid::{largest_level, most_blocks};
+pub(crate) use pyramid::largest_level;
+pub use pyramid::{most_blocks, stack_size};
 
 /// The intermediate structure of one method, allocated for one size.
 #[derive(Debug)]

@@ -6,7 +6,7 @@
 //! - Cost, in fetches, one a block. Counted over all places of the box: radius 1 takes 6 with the odd rule (Figure 3.4)
 //!   and 6 to 9 with the larger one, radius 2 takes 10 to 13 and 10 to 19, radius 8 takes 34 to 97 and 34 to 94, radius 32
 //!   takes 130 to 1153 and 130 to 436: the odd rule grows with the area, the larger one with the side, except for
-//!   boxes that the map's edge cuts, where it takes up to 1278.
+//!   boxes that the map's edge cuts, where it takes up to 1294.
 //!   Matching by modulo loops over the levels for each block.
 //! - Memory: the mipmap (see `mipmap.rs`), and a stack of [`stack_size`] areas a fragment.
 //! - Exact while each box's sum fits the storage: every block read is part of the box.
@@ -28,7 +28,7 @@ use crate::settings::{Matching, Method, Settings, Split};
 /// then has a side of at most s / 2. Starting from the largest block, s = 2^k with k = ⌊log2 (2 MR + 1)⌋, at most
 /// k + 1 areas wait above each other before s = 1, whose strips leave one piece at a time; with the area on top of them
 /// and, for the odd rule, the third piece of an odd corner (whose upper two are strips of side 1), k + 3 are enough.
-/// Tests count the real depth of every box up to side 33.
+/// Tests count the real depth of every box up to side 17, and of a choice of larger ones.
 #[must_use]
 pub fn stack_size(max_radius: u32) -> u32 {
     largest_level(max_radius) + 3
@@ -42,10 +42,12 @@ pub(crate) fn largest_level(max_radius: u32) -> u32 {
 /// An upper bound for the blocks of any box of `radius`, whole or cut by the map's edge; tests count them.
 ///
 /// Either rule can leave an area whose corner is even and no more, and cut it into 2 x 2: the odd rule anywhere (the
-/// "costly mistake" of 4.3), the larger one where the map's edge makes a box oblong.
-pub(crate) fn most_blocks(radius: u32) -> u64 {
+/// "costly mistake" of 4.3), the larger one where the map's edge makes a box oblong. Beside those, a row of smaller
+/// blocks may stand along the border for each level.
+#[must_use]
+pub fn most_blocks(radius: u32) -> u64 {
     let side = 2 * u64::from(radius) + 1;
-    side * side / 4 + 4 * side
+    side * side / 4 + u64::from(side.ilog2() + 2) * side
 }
 
 pub(super) fn counter(source: ShaderSource, settings: &Settings) -> ShaderSource {

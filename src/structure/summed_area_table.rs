@@ -62,7 +62,7 @@ impl SummedAreaTable {
                     .read("table", self.table.texture())
                     .set("axis", axis)
                     .set("stride", stride);
-                if has_stride_fault(&self.settings) {
+                if self.settings.reaching_faults().sample_stride {
                     pass = pass.set("printed_offset", 1_i32 << index);
                 }
                 pass.fill(&mut self.spare)?;
@@ -91,11 +91,6 @@ fn strides(samples: SatSamples, side: u32) -> impl Iterator<Item = (u32, i32)> {
         .map(|(index, stride)| (index, stride.cast_signed()))
 }
 
-/// The listing for 2 samples is right; its extension to more is not.
-fn has_stride_fault(settings: &Settings) -> bool {
-    settings.faults.sample_stride && settings.sat_samples > SatSamples::Two
-}
-
 pub(super) fn build_sources(density: TextureFormat, settings: &Settings) -> Vec<ShaderSource> {
     vec![super::seed_source(SEED, density, settings), doubling_source(settings)]
 }
@@ -103,7 +98,7 @@ pub(super) fn build_sources(density: TextureFormat, settings: &Settings) -> Vec<
 fn doubling_source(settings: &Settings) -> ShaderSource {
     let source = ShaderSource::new(DOUBLING)
         .define("SAMPLES", settings.sat_samples.count())
-        .define_if(has_stride_fault(settings), "FAULT_SAMPLE_STRIDE");
+        .define_if(settings.reaching_faults().sample_stride, "FAULT_SAMPLE_STRIDE");
     super::number(source, settings).file(glsl!("build/summed_area_table.frag"))
 }
 

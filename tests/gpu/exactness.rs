@@ -92,6 +92,34 @@ fn f32_is_refused_past_2_to_24_and_rightly_so() {
 }
 
 #[test]
+fn bounds_hold_for_the_question_that_they_were_found_for_and_no_larger_one() {
+    let gl = egl();
+    // Boxes of radius 1 hold less than 2^32, those of radius 12 do not; n = 4 * 10^9 clamps nothing.
+    let density = random_map(25, 25, 400_000_000);
+    let small = search(4_000_000_000, 1, Edges::Zero);
+    let bounds = CountBounds::of(&density, small);
+    assert!(bounds.densest_box < 1 << 32 && bounds.total > 1 << 32, "{bounds:?}");
+    let map = DensityMap::upload(&gl, &density, bounds).unwrap();
+    let render = |search| {
+        let settings = Settings { search, ..Settings::default() };
+        let mut pipeline = RadiusPipeline::new(&gl, density.size(), map.format(), settings).unwrap();
+        pipeline.render(&map).map(|radii| radii.read().unwrap())
+    };
+    assert_eq!(render(small).unwrap(), reference::radius(&density, small).radius);
+    let large = Search { max_radius: 12, ..small };
+    assert!(matches!(render(large), Err(Error::Inexact { .. })));
+
+    // The naive mipmap's last block is larger than a box of MR.
+    let even = Image::filled(UVec2::splat(8), 87_652_393);
+    let naive = Settings {
+        search: search(u32::MAX, 3, Edges::Zero),
+        method: Method::NaiveMipmap,
+        ..Settings::default()
+    };
+    assert!(refused(&gl, &even, naive));
+}
+
+#[test]
 fn without_bounds_only_n_and_the_radius_can_prove_exactness() {
     let gl = egl();
     let density = random_map(16, 16, 3);

@@ -13,7 +13,7 @@ use varikernel::gl::TextureFormat;
 use varikernel::settings::{Edges, Method, Settings};
 use varikernel::{CountBounds, DensityMap, Error, Gl, Image, RadiusPipeline, context, reference};
 
-use crate::support::{egl, osmesa, random_map, search};
+use crate::support::{egl, osmesa, random_map, search, working_candidates};
 
 /// A host's texture: any format, any filter, as hosts have them.
 fn texture(gl: &Gl, internal: u32, components: u32, kind: u32, size: UVec2, bytes: &[u8]) -> glow::Texture {
@@ -112,6 +112,13 @@ fn textures_that_do_not_fit_are_refused_with_the_names_of_their_enums() {
         gl.glow().bind_texture(glow::TEXTURE_CUBE_MAP, Some(cube));
         (empty, cube)
     };
+    let swizzled = texture(&gl, glow::R32F, glow::RED, glow::FLOAT, UVec2::ONE, &[0; 4]);
+    // SAFETY: the context is current.
+    unsafe {
+        gl.glow().bind_texture(glow::TEXTURE_2D, Some(swizzled));
+        gl.glow().tex_parameter_i32(glow::TEXTURE_2D, glow::TEXTURE_SWIZZLE_R, glow::ZERO.cast_signed());
+    }
+    assert!(refuse(swizzled).0.contains("GL_TEXTURE_SWIZZLE_R"));
     assert_eq!(refuse(empty).1, "none");
     assert!(refuse(cube).1.contains("GL_INVALID_OPERATION"));
 
@@ -126,7 +133,7 @@ fn textures_that_do_not_fit_are_refused_with_the_names_of_their_enums() {
 }
 
 #[test]
-fn a_host_reads_the_radius_texture_in_its_own_shader_without_a_sampler() {
+fn a_host_may_borrow_the_radius_texture_which_is_complete_without_a_sampler() {
     let gl = egl();
     let density = random_map(9, 7, 4);
     let map = DensityMap::upload(&gl, &density, CountBounds::UNKNOWN).unwrap();
@@ -136,6 +143,11 @@ fn a_host_reads_the_radius_texture_in_its_own_shader_without_a_sampler() {
     // The library borrows its own output back as a host's texture: same name, complete, readable.
     let borrowed = DensityMap::borrow(&gl, radii.texture(), CountBounds::UNKNOWN).unwrap();
     assert_eq!((borrowed.size(), borrowed.format()), (map.size(), TextureFormat::R32Uint));
+    assert!(
+        matches!(pipeline.render(&borrowed), Err(Error::Mismatch { .. })),
+        "it would read what it writes"
+    );
+    let radii = pipeline.render(&map).unwrap();
     let mask = DensityMap::borrow(&gl, radii.limited_texture().unwrap(), CountBounds::UNKNOWN).unwrap();
     assert_eq!(mask.format(), TextureFormat::R8Uint);
     // SAFETY: the context is current.
@@ -144,6 +156,44 @@ fn a_host_reads_the_radius_texture_in_its_own_shader_without_a_sampler() {
         gl.glow().get_tex_parameter_i32(glow::TEXTURE_2D, glow::TEXTURE_MIN_FILTER)
     };
     assert_eq!(filter.cast_unsigned(), glow::NEAREST, "an integer texture is complete with GL_NEAREST only");
+}
+
+#[test]
+fn a_search_needs_the_map_that_was_built_last() {
+    let gl = egl();
+    let map = |end| DensityMap::upload(&gl, &random_map(9, 7, end), CountBounds::UNKNOWN).unwrap();
+    let (first, second) = (map(3), map(4));
+    for method in Method::ALL {
+        let settings = Settings { method, ..Settings::default() };
+        let mut pipeline = RadiusPipeline::new(&gl, first.size(), first.format(), settings).unwrap();
+        assert!(matches!(pipeline.search(&first), Err(Error::Mismatch { .. })), "nothing was built");
+        pipeline.build(&first).unwrap();
+        assert!(matches!(pipeline.search(&second), Err(Error::Mismatch { .. })), "another was built");
+        pipeline.search(&first).unwrap();
+    }
+}
+
+#[test]
+fn errors_that_the_host_left_behind_are_not_blamed_on_us() {
+    let gl = egl();
+    // SAFETY: the context is current; an unknown capability is an error and nothing else.
+    let leave_error = || unsafe { gl.glow().enable(0xFFFF) };
+    let density = random_map(9, 7, 3);
+    leave_error();
+    let map = DensityMap::upload(&gl, &density, CountBounds::UNKNOWN).unwrap();
+    leave_error();
+    let settings = Settings { limited_mask: true, ..Settings::default() };
+    let mut pipeline = RadiusPipeline::new(&gl, map.size(), map.format(), settings).unwrap();
+    leave_error();
+    let radii = pipeline.render(&map).unwrap();
+    leave_error();
+    radii.read().unwrap();
+    leave_error();
+    radii.read_limited().unwrap();
+    leave_error();
+    DensityMap::borrow(&gl, radii.texture(), CountBounds::UNKNOWN).unwrap();
+    leave_error();
+    varikernel::gl::time(&gl, || Ok(())).unwrap();
 }
 
 #[test]
@@ -171,15 +221,10 @@ fn two_pipelines_live_side_by_side_and_a_map_may_change_between_frames() {
 
 #[test]
 fn a_glow_context_of_the_host_will_do() {
-    // The host's own handle to the same context.
-    let host = egl();
-    // SAFETY: the loader below is that of the context that `host` keeps current on this thread.
     let candidate_loader = std::cell::RefCell::new(BTreeMap::new());
-    drop(host);
-    let (candidates, _) = context::candidates();
     // SAFETY: addresses are passed on as they are.
     let owner = unsafe {
-        candidates[0].open_through(|name, address| {
+        working_candidates()[0].open_through(|name, address| {
             candidate_loader.borrow_mut().insert(name.to_owned(), address);
             address
         })
@@ -291,6 +336,28 @@ mod wrappers {
         });
     }
 
+    pub(super) extern "system" fn glCheckFramebufferStatus(target: u32) -> u32 {
+        if fails_now() {
+            return glow::FRAMEBUFFER_UNSUPPORTED;
+        }
+        // SAFETY: as above.
+        forward("glCheckFramebufferStatus", |address| unsafe {
+            std::mem::transmute::<*const c_void, extern "system" fn(u32) -> u32>(address)(target)
+        })
+    }
+
+    pub(super) extern "system" fn glGetShaderiv(shader: u32, parameter: u32, value: *mut i32) {
+        // SAFETY: as above; the caller's pointer is passed on.
+        forward("glGetShaderiv", |address| unsafe {
+            std::mem::transmute::<*const c_void, extern "system" fn(u32, u32, *mut i32)>(address)(
+                shader, parameter, value,
+            );
+            if parameter == glow::COMPILE_STATUS && fails_now() {
+                *value = 0;
+            }
+        });
+    }
+
     pub(super) fn of(name: &CStr) -> Option<*const c_void> {
         Some(match name.to_str().unwrap() {
             "glGenTextures" => glGenTextures as *const c_void,
@@ -305,6 +372,8 @@ mod wrappers {
             "glDeleteProgram" => glDeleteProgram as *const c_void,
             "glCreateShader" => glCreateShader as *const c_void,
             "glDeleteShader" => glDeleteShader as *const c_void,
+            "glCheckFramebufferStatus" => glCheckFramebufferStatus as *const c_void,
+            "glGetShaderiv" => glGetShaderiv as *const c_void,
             _ => return None,
         })
     }
@@ -314,6 +383,25 @@ thread_local! {
     static REAL: std::cell::RefCell<BTreeMap<String, usize>> = const { std::cell::RefCell::new(BTreeMap::new()) };
 }
 
+thread_local! {
+    /// How many more calls that can fail succeed; nothing once one has failed.
+    static FAIL_AT: std::cell::Cell<Option<u32>> = const { std::cell::Cell::new(None) };
+}
+
+fn fails_now() -> bool {
+    match FAIL_AT.get() {
+        Some(0) => {
+            FAIL_AT.set(None);
+            true
+        }
+        Some(calls) => {
+            FAIL_AT.set(Some(calls - 1));
+            false
+        }
+        None => false,
+    }
+}
+
 /// Calls the real command behind a wrapper.
 fn forward<T>(name: &str, call: impl FnOnce(*const c_void) -> T) -> T {
     let address = REAL.with_borrow(|real| real[name]);
@@ -321,15 +409,14 @@ fn forward<T>(name: &str, call: impl FnOnce(*const c_void) -> T) -> T {
 }
 
 #[test]
-fn every_object_is_freed_also_after_an_error() {
+fn every_object_is_freed_and_the_state_put_back_also_after_an_error() {
     let live = || {
         [&TEXTURES, &FRAMEBUFFERS, &PROGRAMS, &SHADERS, &SAMPLERS, &VERTEX_ARRAYS]
             .map(|counter| counter.load(Ordering::SeqCst))
     };
-    let (candidates, _) = context::candidates();
     // SAFETY: each wrapper calls the command that it stands for.
     let gl = unsafe {
-        candidates[0].open_through(|name, address| match wrappers::of(name) {
+        working_candidates()[0].open_through(|name, address| match wrappers::of(name) {
             None => address,
             Some(wrapper) => {
                 REAL.with_borrow_mut(|real| {
@@ -355,6 +442,38 @@ fn every_object_is_freed_also_after_an_error() {
         assert!(live()[0] > before[0], "the map is alive");
         let too_large = UVec2::splat(gl.info().max_texture_size + 1);
         assert!(RadiusPipeline::new(&gl, too_large, map.format(), Settings::default()).is_err());
+
+        // Whatever object fails half-way, what was made before it is freed.
+        let (alive, viewport) = (live(), [3, 5, 7, 11]);
+        // SAFETY: the context is current.
+        unsafe { gl.glow().viewport(viewport[0], viewport[1], viewport[2], viewport[3]) };
+        for method in Method::ALL {
+            let settings = Settings { method, limited_mask: true, ..Settings::default() };
+            let new = || RadiusPipeline::new(&gl, map.size(), map.format(), settings);
+            let mut failures = 0;
+            for call in 0.. {
+                FAIL_AT.set(Some(call));
+                let result = new();
+                if FAIL_AT.replace(None).is_some() {
+                    // Fewer such calls were made: nothing failed.
+                    assert!(result.is_ok(), "{method:?}: {result:?}");
+                    break;
+                }
+                let error =
+                    result.err().unwrap_or_else(|| panic!("{method:?}: the failure of call {call} is lost"));
+                assert!(matches!(error, Error::Gl { .. } | Error::Shader { .. }), "{error}");
+                if let Error::Shader { source_text, .. } = &error {
+                    assert!(source_text.contains("glsl/"), "{error}");
+                }
+                assert_eq!(live(), alive, "{method:?}, call {call}: {error}");
+                let mut now = [0; 4];
+                // SAFETY: the context is current, and the viewport has four values.
+                unsafe { gl.glow().get_parameter_i32_slice(glow::VIEWPORT, &mut now) };
+                assert_eq!(now, viewport, "{method:?}, call {call}: the state is put back");
+                failures += 1;
+            }
+            assert!(failures >= 2, "{method:?}: {failures}");
+        }
     }
     assert_eq!(live(), before);
     drop(gl);

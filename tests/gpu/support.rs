@@ -1,7 +1,7 @@
 //! Contexts, maps and settings that the tests share.
 
 use glam::UVec2;
-use varikernel::context::{self, DeviceChoice};
+use varikernel::context::{self, Candidate, DeviceChoice};
 use varikernel::measure::Difference;
 use varikernel::settings::{Edges, Matching, Method, Order, SatSamples, Search, Settings, Split, Storage};
 use varikernel::{CountBounds, DensityMap, Gl, Image, RadiusPipeline, reference};
@@ -9,6 +9,14 @@ use varikernel::{CountBounds, DensityMap, Gl, Image, RadiusPipeline, reference};
 /// The first EGL device that works, or the reason why none does.
 pub(crate) fn egl() -> Gl {
     context::open(&DeviceChoice::Egl(None)).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Every way to a context that works here: EGL lists devices that may not be opened, which is no fault of ours.
+pub(crate) fn working_candidates() -> Vec<Candidate> {
+    let (candidates, missing) = context::candidates();
+    let working: Vec<_> = candidates.into_iter().filter(|candidate| candidate.open().is_ok()).collect();
+    assert!(!working.is_empty(), "no context at all; missing: {missing:?}");
+    working
 }
 
 /// OSMesa, or the reason why it does not work.

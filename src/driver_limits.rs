@@ -1,10 +1,16 @@
-//! llvmpipe ends the loops of a fragment after 65,535 turns in all, and says nothing.
+//! What Mesa's software renderers silently get wrong, refused or worked around before anything is allocated.
 //!
-//! Mesa's compiler counts the turns of all loops of an invocation together (LP_MAX_TGSI_LOOP_ITERATIONS) and then
-//! leaves them, so a long search would return a wrong radius. A forward search is therefore cut into passes over ranges
-//! of radii that stay below the limit; what cannot be cut is refused before anything is allocated. Other renderers
-//! have no such limit and search in one pass.
+//! llvmpipe ends the loops of a fragment after 65,535 turns in all. Its compiler counts the turns of all loops of an
+//! invocation together (LP_MAX_TGSI_LOOP_ITERATIONS) and then leaves them, so a long search would return a wrong radius.
+//! A forward search is therefore cut into passes over ranges of radii that stay below the limit; what cannot be cut
+//! is refused.
+//!
+//! softpipe stores to an element of a shader's array with the first fragment's index for all four of a quad, so the
+//! stack of a pyramid goes wrong where fragments differ; methods with a stack are refused.
+//!
+//! Other renderers have no such limits and search in one pass.
 
+use std::collections::BTreeSet;
 use std::ops::RangeInclusive;
 
 use crate::error::{Error, Result};
@@ -17,8 +23,19 @@ const LLVMPIPE_TURNS: u64 = 65_535;
 /// The ranges of radii that a search takes a pass each for, together 1 to MR.
 ///
 /// # Errors
-/// [`Error::Setting`] for the radius if the renderer would cut a pass short.
+/// [`Error::Setting`] for the radius if the renderer would cut a pass short, for the method if it can't run it.
 pub(crate) fn passes(device: &DeviceInfo, settings: &Settings) -> Result<Vec<RangeInclusive<u32>>> {
+    let has_stack = matches!(settings.method, Method::Pyramid | Method::AveragedMipmap);
+    if device.is_softpipe() && has_stack {
+        return Err(Error::Setting {
+            name: "method",
+            value: format!("{:?}", settings.method),
+            reason:
+                "it keeps a stack for each fragment, and softpipe stores to shader arrays wrongly; use the \
+                     summed-area table, or another renderer"
+                    .to_owned(),
+        });
+    }
     let max_radius = settings.search.max_radius;
     if !device.is_llvmpipe() || settings.method == Method::NaiveMipmap {
         return Ok(vec![1..=max_radius]);
@@ -35,7 +52,7 @@ pub(crate) fn passes(device: &DeviceInfo, settings: &Settings) -> Result<Vec<Ran
         value: max_radius.to_string(),
         reason: format!(
             "a fragment of this search may loop {most_turns} times, and llvmpipe silently stops after \
-             {LLVMPIPE_TURNS}; lower MR or use the summed-area table"
+             {LLVMPIPE_TURNS}; lower MR, search in forward order, or use the summed-area table"
         ),
     })
 }
@@ -57,14 +74,28 @@ fn forward_ranges(settings: &Settings) -> (Vec<RangeInclusive<u32>>, u64) {
     (ranges, most_turns)
 }
 
-/// Turns of a binary search in which no radius is enough, the longest there is, and of one more count for the mask.
+/// The most turns that a group of fragments can take in a binary search.
+///
+/// llvmpipe counts the turns of a whole vector of fragments, which wait for each other: at each step the dearest box
+/// that any of them may ask for, as long as any of them still searches, and one more box for the mask.
 fn binary_turns(settings: &Settings) -> u64 {
     let max_radius = settings.search.max_radius;
-    let (mut first, mut turns) = (1, turns_of_box(settings, max_radius));
-    while first < max_radius {
-        let middle = first.midpoint(max_radius);
-        turns += turns_of_box(settings, middle);
-        first = middle + 1;
+    let mut turns = turns_of_box(settings, max_radius);
+    if max_radius == 1 {
+        return turns;
+    }
+    // The ranges (first, last) that a fragment may be left with.
+    let mut ranges: BTreeSet<(u32, u32)> = BTreeSet::from([(1, max_radius)]);
+    while let Some(dearest) = ranges.iter().map(|&(first, last)| first.midpoint(last)).max() {
+        turns += turns_of_box(settings, dearest);
+        ranges = ranges
+            .into_iter()
+            .flat_map(|(first, last)| {
+                let middle = first.midpoint(last);
+                [(first, middle), (middle + 1, last)]
+            })
+            .filter(|(first, last)| first < last)
+            .collect();
     }
     turns
 }
