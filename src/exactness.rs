@@ -43,16 +43,18 @@ impl CountBounds {
     #[must_use]
     pub fn of(density: &Image<u32>, search: Search) -> Self {
         let total = density.values().iter().map(|&count| u64::from(count)).sum();
-        if total <= U32_MAX {
+        if total <= F32_MAX {
             return Self::total_at_most(total);
         }
         let densest =
             |counts: &Image<u32>| crate::reference::Table::new(counts).densest_box(search.max_radius);
-        Self {
-            total,
-            densest_box: densest(density),
-            densest_clamped_box: densest(&density.map(|count| count.min(search.min_photons))),
-        }
+        let densest_box = densest(density);
+        let densest_clamped_box = if densest_box <= U32_MAX {
+            densest_box
+        } else {
+            densest(&density.map(|count| count.min(search.min_photons)))
+        };
+        Self { total, densest_box, densest_clamped_box }
     }
 }
 

@@ -1,4 +1,85 @@
-//! placeholder
+//! How wide must the filter be?
+//!
+//! Photon mapping turns photons into light by averaging over a neighbourhood. A fixed radius blurs caustics or leaves
+//! walls patchy; this library finds, for every pixel of a photon density map, the smallest box radius that holds at
+//! least n photons, with textures and fragment shaders alone: OpenGL 3.3 core, no compute shaders, no extensions. It
+//! reproduces E. W. Bjønnes' thesis (Oslo 2010, "the thesis" below) and is exact where the thesis rounds.
+//!
+//! # Use
+//! ```no_run
+//! # fn main() -> varikernel::Result<()> {
+//! # fn loader(_: &std::ffi::CStr) -> *const std::ffi::c_void { std::ptr::null() }
+//! # let host_texture: glow::Texture = unimplemented!();
+//! # let photons_drawn = 1_000_000;
+//! use varikernel::settings::{Edges, Order, Search};
+//! use varikernel::{CountBounds, DensityMap, Gl, RadiusPipeline, Settings};
+//!
+//! // SAFETY: the host's context is current on this thread while `gl`, or anything made from it, is used.
+//! let gl = unsafe { Gl::from_loader(loader) }?;
+//!
+//! // The host's texture: GL_R32UI, GL_R32F or GL_R8UI, photons per pixel.
+//! let density = DensityMap::borrow(&gl, host_texture, CountBounds::total_at_most(photons_drawn))?;
+//! let search = Search { min_photons: 25, max_radius: 32, edges: Edges::Scale, order: Order::Binary };
+//! let settings = Settings { search, ..Settings::default() };
+//! let mut pipeline = RadiusPipeline::new(&gl, density.size(), density.format(), settings)?;
+//!
+//! // Each frame:
+//! let radii = pipeline.render(&density)?;
+//! let texture = radii.texture(); // a usampler2D for the host's own shaders
+//! # Ok(())
+//! # }
+//! ```
+//! Without a host, `context::open` (features `egl` and `osmesa`) makes a headless context.
+//!
+//! # The idea that keeps it small
+//! The thesis has one question, "how many photons lie in this box?", several answers to it, a search over radii and an
+//! edge rule. They stay apart: `glsl/radius.frag` holds the search and calls `count_in_box`, which each file of
+//! `glsl/count/` defines, and `glsl/common/enough.glsl` holds the edge rule. A program is one search and one counter.
+//!
+//! # Rooms
+//! Data flows from top to bottom, and a module names only modules below it (checked by `tests/layers.rs`):
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | `cli`, `main` | the program, built on the public library: one file a verb |
+//! | [`measure`] | how right and how fast a result is |
+//! | [`pipeline`] | the stages in order; what a host calls |
+//! | `radius` | density map and structure in, radius map out |
+//! | [`structure`] | brute force, mipmaps, pyramid, summed-area table: a section of the thesis each |
+//! | `loop_limit` | what llvmpipe would silently cut short |
+//! | [`maps`] | what flows between the stages, each with its unit |
+//! | [`exactness`] | which sums fit which storage, decided before computing |
+//! | [`reference`](mod@reference) | the definition: the same in plain Rust, without OpenGL |
+//! | `synth` | seeded test maps |
+//! | `context` | headless contexts: EGL devices and OSMesa |
+//! | [`gl`] | programs, textures, passes, timers, saved state; with `context` the only unsafe code |
+//! | [`settings`], [`image`], [`error`] | plain data that every module may name |
+//!
+//! # The host's OpenGL state
+//! Each public call puts back what it touches, also when it fails:
+//!
+//! - the current program, vertex array, draw and read framebuffer, and the viewport;
+//! - the active texture unit, and the 2D texture and the sampler of units 0 to 3;
+//! - blending and the colour mask of draw buffers 0 and 1;
+//! - face culling, scissor test, logic operation, rasteriser discard, clip distances 0 to 7, polygon mode;
+//! - the pixel pack and unpack buffers, and alignment, row length, skips and byte swapping of both.
+//!
+//! Nothing else is touched. GL errors that were pending are taken and logged, so that they are not blamed on the call. A host
+//! may not call while transform feedback or conditional rendering is active, which would swallow the draws. Objects
+//! may be dropped in any order while the context is current.
+//!
+//! # Glossary
+//! | word | meaning |
+//! |---|---|
+//! | n, `min_photons` | photons that a box has to hold; "MP" in the thesis's listings |
+//! | MR, `max_radius` | the radius at which a search ends |
+//! | R, radius | half the side of a box without its middle pixel: the box of radius r has side 2 r + 1 |
+//! | S | photons of a box that are inside the map |
+//! | T, I | area of a box, and of its part inside the map |
+//! | density map | photons per pixel |
+//! | radius map | R per pixel: the smallest r >= 1 whose box holds n photons, MR where none does |
+//! | limited | a pixel whose box of radius MR still holds too few |
+//! | SAT | summed-area table |
 
 #[cfg(any(feature = "egl", feature = "osmesa"))]
 pub mod context;

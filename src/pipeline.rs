@@ -90,6 +90,12 @@ impl RadiusPipeline {
         Ok(self.search.radii())
     }
 
+    /// What the last [`search`](Self::search) found, to be read after it was timed; undefined before the first.
+    #[must_use]
+    pub fn radii(&self) -> &RadiusMap {
+        self.search.radii()
+    }
+
     /// How the counts of `density` would be taken in, and whether the result is exact.
     ///
     /// # Errors

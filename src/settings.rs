@@ -13,7 +13,7 @@ const NAIVE_MAX_RADIUS: u32 = 16_384;
 
 /// The question: the smallest radius whose box holds at least n photons (thesis 1.3).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Search {
     /// n, "MP" in the thesis's listings: photons that a box has to hold, at least 1.
     pub min_photons: u32,
@@ -29,7 +29,7 @@ pub struct Search {
 
 /// What a box holds where it reaches past the map (thesis 3.1, 4.4).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum Edges {
     /// Nothing is outside.
@@ -40,7 +40,7 @@ pub enum Edges {
 
 /// In which order radii are tried (thesis 3.5).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum Order {
     /// 1, 2, 3, ... up to the first that holds enough: as many counts as the radius is long.
@@ -51,7 +51,7 @@ pub enum Order {
 
 /// How photons in a box are counted: the thesis's solutions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum Method {
     /// Every pixel of every box (3.2, 4.1).
@@ -85,7 +85,7 @@ impl Method {
 
 /// How a pyramid's remaining area is split after a sample (thesis 4.3).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum Split {
     /// By which coordinates are odd: the first listing.
@@ -96,7 +96,7 @@ pub enum Split {
 
 /// How the pyramid finds the level of its next sample (thesis 4.3, 6.3.5).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum Matching {
     /// From the top level down until corner and extent fit, by modulo: the thesis's loop.
@@ -146,9 +146,22 @@ impl serde::Serialize for SatSamples {
     }
 }
 
+#[cfg(feature = "serde")]
+impl<'de> serde::Deserialize<'de> for SatSamples {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let count = <u32 as serde::Deserialize>::deserialize(deserializer)?;
+        Self::ALL.into_iter().find(|samples| samples.count() == count).ok_or_else(|| {
+            serde::de::Error::invalid_value(
+                serde::de::Unexpected::Unsigned(u64::from(count)),
+                &"2, 4, 8 or 16 samples a pass",
+            )
+        })
+    }
+}
+
 /// The number in which sums are kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum Storage {
     /// 32-bit float, as the thesis: whole numbers up to 2^24.
@@ -158,9 +171,9 @@ pub enum Storage {
 }
 
 /// Faults of the thesis's printed listings, each of which can be switched on (see
-/// [`structure::summed_area_table`](crate::structure) for what they are and do).
+/// [`structure`](crate::structure#as-printed) for what they do).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[expect(clippy::struct_excessive_bools, reason = "each fault can be switched on without the others")]
 pub struct Faults {
     /// Listing 4.2, sampling: coordinates are clamped to 0..63 whatever the map's size.
@@ -212,7 +225,7 @@ impl Faults {
 
 /// What happens where the sums could round or wrap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Exactness {
     /// An error before anything is computed.
     Required,
@@ -222,7 +235,7 @@ pub enum Exactness {
 
 /// Everything that a [`RadiusPipeline`](crate::RadiusPipeline) needs to know beside the map's size.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Settings {
     /// The question.
     pub search: Search,

@@ -1,5 +1,6 @@
 //! One file a verb: options to one library call, and its answer to a person or a machine.
 
+mod bench;
 mod compare;
 mod devices;
 pub(crate) mod output;
@@ -41,6 +42,7 @@ enum Verb {
     Compare(compare::Args),
     Synth(synth::Args),
     Devices(devices::Args),
+    Bench(Box<bench::Args>),
 }
 
 /// What a verb that did its job found.
@@ -56,6 +58,7 @@ pub(crate) fn run(cli: Cli) -> Result<Outcome> {
         Verb::Compare(args) => compare::run(&args),
         Verb::Synth(args) => synth::run(&args),
         Verb::Devices(args) => devices::run(&args),
+        Verb::Bench(args) => bench::run(&args),
     }
 }
 

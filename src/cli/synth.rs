@@ -78,7 +78,8 @@ fn check_density(args: &Args, density: f64) -> Result<()> {
     Ok(())
 }
 
-fn parse_size(text: &str) -> Result<UVec2> {
+/// 640x480, within what can be read again.
+pub(super) fn parse_size(text: &str) -> Result<UVec2> {
     let (width, height) = text.split_once('x').context("write it as 640x480")?;
     let parse = |text: &str| text.parse::<u32>().context("write it as 640x480");
     let size = UVec2::new(parse(width)?, parse(height)?);

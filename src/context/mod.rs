@@ -5,7 +5,7 @@
 
 #![expect(unsafe_code, reason = "contexts are foreign handles; design rule 8 confines them to this module")]
 
-#[cfg(feature = "egl")]
+#[cfg(all(feature = "egl", not(target_vendor = "apple")))]
 mod egl;
 #[cfg(feature = "osmesa")]
 mod osmesa;
@@ -77,7 +77,7 @@ pub struct Candidate {
 
 #[derive(Debug)]
 enum Kind {
-    #[cfg(feature = "egl")]
+    #[cfg(all(feature = "egl", not(target_vendor = "apple")))]
     Egl(egl::Device),
     #[cfg(feature = "osmesa")]
     OsMesa,
@@ -87,9 +87,10 @@ enum Kind {
 /// are missing.
 #[must_use]
 pub fn candidates() -> (Vec<Candidate>, Vec<String>) {
-    #[cfg_attr(not(feature = "egl"), expect(unused_mut, reason = "only EGL can be missing as a platform"))]
     let (mut candidates, mut missing) = (Vec::new(), Vec::new());
-    #[cfg(feature = "egl")]
+    #[cfg(not(all(feature = "egl", not(target_vendor = "apple"))))]
+    missing.push("egl: not part of this build".to_owned());
+    #[cfg(all(feature = "egl", not(target_vendor = "apple")))]
     match egl::devices() {
         Ok(devices) => candidates.extend(devices.into_iter().map(|device| Candidate {
             choice: DeviceChoice::Egl(Some(device.index)),
@@ -98,6 +99,8 @@ pub fn candidates() -> (Vec<Candidate>, Vec<String>) {
         })),
         Err(reason) => missing.push(format!("egl: {reason}")),
     }
+    #[cfg(not(feature = "osmesa"))]
+    missing.push("osmesa: not part of this build".to_owned());
     #[cfg(feature = "osmesa")]
     candidates.push(Candidate {
         choice: DeviceChoice::OsMesa,
@@ -113,17 +116,34 @@ impl Candidate {
     /// # Errors
     /// [`Error::NoContext`] with the platform's answer; [`Error::Version`] if it is older than 3.3.
     pub fn open(&self) -> Result<Gl> {
+        // SAFETY: the addresses are passed on as they are.
+        unsafe { self.open_through(|_, address| address) }
+    }
+
+    /// As [`open`](Self::open), with each command's address passed through `command` first: to count or log commands,
+    /// or to hide those outside of OpenGL 3.3 core behind null.
+    ///
+    /// # Errors
+    /// As [`open`](Self::open).
+    ///
+    /// # Safety
+    /// `command` returns null or the address of a function that behaves as the named command.
+    pub unsafe fn open_through(
+        &self,
+        mut command: impl FnMut(&CStr, *const c_void) -> *const c_void,
+    ) -> Result<Gl> {
         let guard = ThreadGuard::take()?;
         let opened: Result<Opened, String> = match &self.kind {
-            #[cfg(feature = "egl")]
+            #[cfg(all(feature = "egl", not(target_vendor = "apple")))]
             Kind::Egl(device) => egl::open(device),
             #[cfg(feature = "osmesa")]
             Kind::OsMesa => osmesa::open(),
         };
         let Opened { context, loader } = opened.map_err(Error::NoContext)?;
-        // SAFETY: the context was just made current on this thread, the loader is its own, and `Gl` keeps it alive;
-        // `Gl` cannot leave the thread, and the guard keeps a second context of ours from taking its place.
-        unsafe { Gl::from_owned_context(Box::new((context, guard)), loader) }
+        // SAFETY: the context was just made current on this thread, the loader is its own but for what the caller
+        // vouches for, and `Gl` keeps it alive; `Gl` cannot leave the thread, and the guard keeps a second context of
+        // ours from taking its place.
+        unsafe { Gl::from_owned_context(Box::new((context, guard)), |name| command(name, loader(name))) }
     }
 }
 

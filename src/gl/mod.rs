@@ -19,7 +19,7 @@ pub(crate) use source::glsl;
 pub(crate) use state::StateGuard;
 pub(crate) use texture::Texture;
 pub use texture::TextureFormat;
-pub use timer::{Sample, time};
+pub use timer::{Sample, Timer, time};
 
 use std::any::Any;
 use std::ffi::{CStr, c_void};
@@ -46,7 +46,7 @@ struct Inner {
     nearest: glow::Sampler,
     nearest_mipmap: glow::Sampler,
     /// The context itself, when the library opened it. Last, so that it is dropped last.
-    context: Option<Box<dyn Any>>,
+    _context: Option<Box<dyn Any>>,
 }
 
 type GetBooleaniV = unsafe extern "system" fn(target: u32, index: u32, data: *mut u8);
@@ -93,7 +93,15 @@ impl Gl {
     /// `loader` returns the address of the named command in the context that is current on this thread, or
     /// null, and that context is current on this thread whenever the handle, its clones, or anything made
     /// from them is used or dropped.
-    pub unsafe fn from_loader(mut loader: impl FnMut(&CStr) -> *const c_void) -> Result<Self> {
+    pub unsafe fn from_loader(loader: impl FnMut(&CStr) -> *const c_void) -> Result<Self> {
+        // SAFETY: as the caller vouches.
+        unsafe { Self::load(loader, None) }
+    }
+
+    unsafe fn load(
+        mut loader: impl FnMut(&CStr) -> *const c_void,
+        context: Option<Box<dyn Any>>,
+    ) -> Result<Self> {
         check_current(&mut loader)?;
         let has_debug_groups = !loader(c"glPushDebugGroup").is_null();
         let get_booleani_v = loader(c"glGetBooleani_v");
@@ -104,7 +112,7 @@ impl Gl {
             unsafe { std::mem::transmute::<*const c_void, GetBooleaniV>(get_booleani_v) }
         });
         // SAFETY: as the caller vouches.
-        unsafe { Self::new(Arc::new(glow), get_booleani_v, has_debug_groups, None) }
+        unsafe { Self::new(Arc::new(glow), get_booleani_v, has_debug_groups, context) }
     }
 
     /// Uses a context that the host has already wrapped in glow 0.17.
@@ -133,10 +141,7 @@ impl Gl {
         loader: impl FnMut(&CStr) -> *const c_void,
     ) -> Result<Self> {
         // SAFETY: as the caller vouches.
-        let mut gl = unsafe { Self::from_loader(loader) }?;
-        Rc::get_mut(&mut gl.inner).expect("the handle was made a line ago and has no clone").context =
-            Some(context);
-        Ok(gl)
+        unsafe { Self::load(loader, Some(context)) }
     }
 
     unsafe fn new(
@@ -168,7 +173,7 @@ impl Gl {
             vertex_array,
             nearest,
             nearest_mipmap,
-            context,
+            _context: context,
         };
         Ok(Self { inner: Rc::new(inner) })
     }

@@ -1,16 +1,7 @@
 //! What the library touches of a host's OpenGL state, saved and put back.
 //!
-//! Touched, and restored when the call returns, also with an error:
-//!
-//! - the current program, vertex array, draw and read framebuffer, and the viewport;
-//! - the active texture unit, and the 2D texture and the sampler of units 0 to 3;
-//! - blending and the colour mask of draw buffers 0 and 1;
-//! - face culling, scissor test, logic operation, rasteriser discard, clip distances 0 to 7, polygon mode;
-//! - the pixel pack and unpack buffers, and alignment, row length, skips and byte swapping of both.
-//!
-//! Not touched: everything else. Depth and stencil tests need no change, since the framebuffers drawn to have
-//! neither buffer; multisampling likewise. A host may not call while transform feedback or conditional rendering
-//! is active, which would swallow the draws.
+//! The list is in the crate's documentation, "The host's OpenGL state". Depth and stencil tests need no change, since
+//! the framebuffers drawn to have neither buffer; multisampling likewise.
 
 use glow::HasContext as _;
 

@@ -8,6 +8,11 @@ use glow::HasContext as _;
 use super::{Gl, StateGuard, Target, Texture, TextureFormat, gl_error};
 use crate::error::Result;
 
+/// Query and clock may differ by this share of the clock's time...
+const MARGIN_SHARE: f64 = 0.05;
+/// ...or by this much, which is what submitting and waiting may take, whichever is more.
+const MARGIN: Duration = Duration::from_micros(250);
+
 /// One timed piece of work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
@@ -18,52 +23,128 @@ pub struct Sample {
     pub wall: Duration,
 }
 
-/// Runs `work`, waits for it, and says how long it took on the GPU and by the clock.
+impl Sample {
+    /// Whether query and clock contradict each other, so that one of them is not to be trusted.
+    ///
+    /// The margin is 5 % of the clock's time, and at least 0.25 ms. The clock encloses the work, so that a query
+    /// beyond it by more than the margin is wrong on any device; so is a query of nothing at all. On a software
+    /// renderer both measure the same processor, and a query that falls short by more than the margin is
+    /// wrong as well. On a GPU it may fall short by any amount: the clock includes submission and the way back.
+    #[must_use]
+    pub fn is_suspect(self, software: bool) -> bool {
+        let margin = self.wall.mul_f64(MARGIN_SHARE).max(MARGIN);
+        let too_long = self.query > self.wall + margin;
+        let too_short = software && self.query + margin < self.wall;
+        too_long || too_short || self.query.is_zero()
+    }
+}
+
+/// A query that can be used again and again; timing allocates nothing.
 ///
-/// llvmpipe stamps the begin of a query while it rasterises the frame in hand: too late if that frame is the timed
-/// work, and never if there is none. There, a frame of one pixel is put before the begin and another finished right
-/// after it.
-/// No other GL_TIME_ELAPSED query may be running: nested ones are an error in OpenGL.
+/// No other GL_TIME_ELAPSED query may be running while it times: nested ones are an error in OpenGL.
+#[derive(Debug)]
+pub struct Timer {
+    gl: Gl,
+    query: glow::Query,
+    /// llvmpipe stamps the begin of a query while it rasterises the frame in hand: too late if that frame is the
+    /// timed work, and never if there is none. There, a frame of one pixel is put before the begin and
+    /// another finished right after it.
+    llvmpipe_frame: Option<Target>,
+}
+
+impl Timer {
+    /// Makes the query.
+    ///
+    /// # Errors
+    /// [`Error::Gl`](crate::Error::Gl) when memory runs out.
+    pub fn new(gl: &Gl) -> Result<Self> {
+        let _state = StateGuard::new(gl);
+        let llvmpipe_frame = if gl.info().is_llvmpipe() {
+            Some(Target::single(gl, Texture::new(gl, TextureFormat::R32Uint, UVec2::ONE, 1)?)?)
+        } else {
+            None
+        };
+        // SAFETY: the context is current while the handle lives.
+        let query = unsafe { gl.glow().create_query() }.map_err(|what| gl_error(gl.glow(), &what))?;
+        Ok(Self { gl: gl.clone(), query, llvmpipe_frame })
+    }
+
+    /// Runs `work`, waits for it, and says how long it took on the GPU and by the clock.
+    ///
+    /// # Errors
+    /// Those of `work`, and [`Error::Gl`](crate::Error::Gl) if the query fails.
+    pub fn time<T>(&mut self, work: impl FnOnce() -> Result<T>) -> Result<(T, Sample)> {
+        let glow = self.gl.glow();
+        let _state = StateGuard::new(&self.gl);
+        // SAFETY: the context is current while the handle lives; the query is ended below on every way out.
+        unsafe {
+            if let Some(frame) = &self.llvmpipe_frame {
+                frame.clear();
+            }
+            glow.finish();
+            glow.begin_query(glow::TIME_ELAPSED, self.query);
+            if let Some(frame) = &self.llvmpipe_frame {
+                frame.clear();
+                glow.finish();
+            }
+        }
+        let start = Instant::now();
+        let result = work();
+        let mut nanoseconds = 0_u64;
+        // SAFETY: no query buffer is bound in a 3.3 context, so the "offset" is the address of the result.
+        // (glow's plain reader of u64 wants a 4.5 command.)
+        let wall = unsafe {
+            glow.end_query(glow::TIME_ELAPSED);
+            glow.finish();
+            let wall = start.elapsed();
+            let address = (&raw mut nanoseconds).expose_provenance();
+            glow.get_query_parameter_u64_with_offset(self.query, glow::QUERY_RESULT, address);
+            wall
+        };
+        let result = result?;
+        self.gl.check("timing")?;
+        Ok((result, Sample { query: Duration::from_nanos(nanoseconds), wall }))
+    }
+}
+
+impl Drop for Timer {
+    fn drop(&mut self) {
+        // SAFETY: the context is current while the handle lives, and the name is ours.
+        unsafe { self.gl.glow().delete_query(self.query) };
+    }
+}
+
+/// Times `work` once, with a [`Timer`] of its own.
 ///
 /// # Errors
-/// Those of `work`, and [`Error::Gl`](crate::Error::Gl) if the query fails.
+/// As [`Timer::new`] and [`Timer::time`].
 pub fn time<T>(gl: &Gl, work: impl FnOnce() -> Result<T>) -> Result<(T, Sample)> {
-    let glow = gl.glow();
-    let _state = StateGuard::new(gl);
-    let llvmpipe_frame = if gl.info().is_llvmpipe() {
-        Some(Target::single(gl, Texture::new(gl, TextureFormat::R32Uint, UVec2::ONE, 1)?)?)
-    } else {
-        None
-    };
-    // SAFETY: the context is current while the handle lives.
-    let query = unsafe { glow.create_query() }.map_err(|what| gl_error(glow, &what))?;
-    // SAFETY: as above; the query is deleted on every way out.
-    unsafe {
-        if let Some(frame) = &llvmpipe_frame {
-            frame.clear();
-        }
-        glow.finish();
-        glow.begin_query(glow::TIME_ELAPSED, query);
-        if let Some(frame) = &llvmpipe_frame {
-            frame.clear();
-            glow.finish();
-        }
+    Timer::new(gl)?.time(work)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sample(query_us: u64, wall_us: u64) -> Sample {
+        Sample { query: Duration::from_micros(query_us), wall: Duration::from_micros(wall_us) }
     }
-    let start = Instant::now();
-    let result = work();
-    let mut nanoseconds = 0_u64;
-    // SAFETY: no query buffer is bound in a 3.3 context, so the "offset" is the address of the result.
-    // (glow's plain reader of u64 wants a 4.5 command.)
-    let wall = unsafe {
-        glow.end_query(glow::TIME_ELAPSED);
-        glow.finish();
-        let wall = start.elapsed();
-        let address = (&raw mut nanoseconds).expose_provenance();
-        glow.get_query_parameter_u64_with_offset(query, glow::QUERY_RESULT, address);
-        glow.delete_query(query);
-        wall
-    };
-    let result = result?;
-    gl.check("timing")?;
-    Ok((result, Sample { query: Duration::from_nanos(nanoseconds), wall }))
+
+    #[test]
+    fn margins_by_hand() {
+        // 5 % of 100 ms are 5 ms.
+        assert!(!sample(96_000, 100_000).is_suspect(true));
+        assert!(sample(94_000, 100_000).is_suspect(true));
+        assert!(!sample(104_000, 100_000).is_suspect(true));
+        // Short work may differ by a quarter of a millisecond.
+        assert!(!sample(100, 340).is_suspect(true));
+        assert!(sample(100, 360).is_suspect(true));
+    }
+
+    #[test]
+    fn on_a_gpu_only_a_query_longer_than_the_clock_or_of_nothing_is_suspect() {
+        assert!(!sample(10, 100_000).is_suspect(false));
+        assert!(sample(106_000, 100_000).is_suspect(false));
+        assert!(sample(0, 100).is_suspect(false));
+    }
 }

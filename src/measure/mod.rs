@@ -1,7 +1,17 @@
 //! How right and how fast a result is.
 
+#[cfg(feature = "bench")]
+pub mod bench;
 mod difference;
+#[cfg(feature = "report")]
+pub mod report;
+mod statistics;
 mod summary;
+#[cfg(feature = "report")]
+pub mod thesis;
+mod unit_pass;
 
 pub use difference::{Difference, Place};
+pub use statistics::Statistics;
 pub use summary::{RadiusSummary, total_photons};
+pub use unit_pass::{Unit, UnitPass};

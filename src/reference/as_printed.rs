@@ -99,7 +99,8 @@ fn sample(table: &Image<u32>, lo: IVec2, hi: IVec2, faults: Faults) -> u32 {
     if corner {
         value = value.wrapping_add(fetch(table, ll));
     }
-    value.cast_signed().max(0).cast_unsigned()
+    // The listing's value is an int, and below zero is no photon; the corrected sampling counts in uint.
+    if faults.in_table_sampling() { value.cast_signed().max(0).cast_unsigned() } else { value }
 }
 
 /// The entry, or 0 outside.

@@ -2,6 +2,23 @@
 //!
 //! Each answers "how many photons are in this box?" for `radius.frag`, except the naive mipmap, which does not
 //! answer that question and has a search of its own.
+//!
+//! # As printed
+//! The listings have faults, which [`Faults`](crate::settings::Faults) can switch on, made well defined by
+//! letting reads outside the texture give 0:
+//!
+//! | fault | printed | meant | effect |
+//! |---|---|---|---|
+//! | `clamp_to_63` | `clamp(.., 0, 63)` | the map's size | right at 64² only |
+//! | `border_test` | `ll.x > 0`, `ll.y > 0` | `>= 0` | boxes from column or row 1 count column or row 0 as well |
+//! | `corner_test` | `!(ll.x < 0 && ll.y < 0)` | both `>= 0` | with `border_test`, a corner is added that nothing took away |
+//! | `swapped_axes` | horizontal passes move y | x | too few passes for one side if the map is not square |
+//! | `sample_stride` | offset 2^pass, s - 1 more samples along x | s^pass, s - 2 along the axis | the table is wrong for s > 2 |
+//! | `forgotten_strip` | 4.3, first listing: `if(all(range))` | `if(range[..])` | a strip one pixel wide or high is not counted |
+//! | `float_ratio` | 4.4: outside over inside area, in f32 | S T >= n I | wrong for the rare n at which rounding decides: 1875 and 1925 of the first 2000, at MR 32 |
+//!
+//! The first five are of 4.2. Alone, `corner_test` only adds reads outside of the table, which do nothing. What each
+//! fault gives is predicted by [`reference::as_printed`](crate::reference::as_printed).
 
 mod brute_force;
 mod mipmap;

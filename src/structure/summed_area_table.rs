@@ -11,19 +11,7 @@
 //! - Against the thesis: u32 is the default, which its drivers did not support; sizes need not be square or
 //!   powers of s; reads outside the table, which GLSL leaves undefined, are tested for.
 //!
-//! # As printed
-//! The listings of 4.2 have faults, which [`Faults`](crate::settings::Faults) can switch on, made well defined by
-//! letting reads outside the texture give 0:
-//!
-//! | fault | printed | meant | effect |
-//! |---|---|---|---|
-//! | `clamp_to_63` | `clamp(.., 0, 63)` | the map's size | right at 64² only |
-//! | `border_test` | `ll.x > 0`, `ll.y > 0` | `>= 0` | boxes from column or row 1 count column or row 0 as well |
-//! | `corner_test` | `!(ll.x < 0 && ll.y < 0)` | both `>= 0` | with `border_test`, a corner is added that nothing took away |
-//! | `swapped_axes` | horizontal passes move y | x | too few passes for one side if the map is not square |
-//! | `sample_stride` | offset 2^pass, s - 1 more samples along x | s^pass, s - 2 along the axis | the table is wrong for s > 2 |
-//!
-//! The other two stand elsewhere: `forgotten_strip` in the pyramid's first listing (4.3), `float_ratio` in 4.4.
+//! The listings' faults are described in `mod.rs`, since all methods have some.
 
 use glam::{IVec2, UVec2};
 

@@ -2,5 +2,11 @@
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
+mod approximate;
+mod exactness;
+mod faults;
+mod host;
 mod radius;
+mod shaders;
+mod state;
 mod support;

@@ -3,7 +3,7 @@
 use glam::UVec2;
 use varikernel::context::{self, DeviceChoice};
 use varikernel::measure::Difference;
-use varikernel::settings::{Edges, Faults, Method, Order, SatSamples, Search, Settings, Split, Storage};
+use varikernel::settings::{Edges, Matching, Method, Order, SatSamples, Search, Settings, Split, Storage};
 use varikernel::{CountBounds, DensityMap, Gl, Image, RadiusPipeline, reference};
 
 /// The first EGL device that works, or the reason why none does.
@@ -53,8 +53,6 @@ pub(crate) fn spike(width: u32, height: u32) -> Image<u32> {
     map
 }
 
-pub(crate) const SAMPLES: [SatSamples; 4] = SatSamples::ALL;
-
 /// Every exact method with every variant of it, for one question.
 pub(crate) fn exact_variants(search: Search) -> Vec<Settings> {
     let mut variants = Vec::new();
@@ -67,10 +65,15 @@ pub(crate) fn exact_variants(search: Search) -> Vec<Settings> {
                 ..Settings::default()
             };
             variants.push(Settings { method: Method::BruteForce, ..base });
-            for split in [Split::Odd, Split::Larger] {
-                variants.push(Settings { method: Method::Pyramid, split, ..base });
+            for (split, matching) in [
+                (Split::Odd, Matching::Bits),
+                (Split::Odd, Matching::Modulo),
+                (Split::Larger, Matching::Bits),
+                (Split::Larger, Matching::Modulo),
+            ] {
+                variants.push(Settings { method: Method::Pyramid, split, matching, ..base });
             }
-            for sat_samples in SAMPLES {
+            for sat_samples in SatSamples::ALL {
                 variants.push(Settings { method: Method::SummedAreaTable, sat_samples, ..base });
             }
         }
@@ -91,21 +94,6 @@ pub(crate) fn on_gpu(gl: &Gl, density: &Image<u32>, settings: Settings) -> refer
     let radius = radii.read().unwrap();
     let limited = radii.read_limited().unwrap().expect("the tests ask for the mask");
     reference::Radii { radius, limited }
-}
-
-/// Every fault on its own, then all.
-pub(crate) fn each_fault() -> Vec<Faults> {
-    let none = Faults::NONE;
-    vec![
-        Faults { clamp_to_63: true, ..none },
-        Faults { border_test: true, ..none },
-        Faults { corner_test: true, ..none },
-        Faults { swapped_axes: true, ..none },
-        Faults { sample_stride: true, ..none },
-        Faults { forgotten_strip: true, ..none },
-        Faults { float_ratio: true, ..none },
-        Faults::AS_PRINTED,
-    ]
 }
 
 /// Fails with the first places that differ.

@@ -1,0 +1,9 @@
+// The unit of every timing: one texel read, the same texel written.
+uniform usampler2D density;
+
+layout(location = 0) out uint photons;
+
+void main()
+{
+    photons = texelFetch(density, ivec2(gl_FragCoord.xy), 0).r;
+}

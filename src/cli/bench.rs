@@ -1,0 +1,223 @@
+//! `varikernel bench`: how fast each method is on this machine.
+
+mod table;
+
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use anyhow::{Context as _, Result, bail};
+use clap::ValueEnum as _;
+use glam::UVec2;
+use indicatif::{ProgressBar, ProgressStyle};
+use varikernel::context::{self, DeviceChoice};
+use varikernel::image::{ReadOptions, check_writable, read_counts};
+use varikernel::measure::bench::{self, BenchSettings, MapSource, Progress, Protocol, Report};
+use varikernel::settings::{Edges, MAX_RADIUS_LIMIT, Method, Order, SatSamples};
+use varikernel::synth::Kind;
+
+use super::Outcome;
+
+/// Time the methods, check their answers, and rank them.
+///
+/// Every case is one full-screen job: "build" fills the intermediate structure, "search" finds the radii in it, "frame"
+/// is both. Times are medians of GPU time queries, and "copies" are the same in passes that read and write each
+/// texel once. A method whose answer is wrong gets no rank.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Args {
+    /// Sizes of synthetic maps: sides, or WIDTHxHEIGHT; files have their own.
+    #[arg(long, value_delimiter = ',', default_value = "64,128,256,512", value_parser = parse_size)]
+    sizes: Vec<UVec2>,
+
+    /// Map to time with, again for more: a kind of `varikernel synth`, or an EXR, PNG or NPY file of counts.
+    #[arg(long = "map", value_name = "FILE|KIND", default_value = "caustic")]
+    maps: Vec<PathBuf>,
+
+    /// Channel to read of EXR files that have several.
+    #[arg(long)]
+    channel: Option<String>,
+
+    /// Methods to time.
+    #[arg(long, value_enum, value_delimiter = ',', default_value = "brute-force,pyramid,sat")]
+    methods: Vec<Method>,
+
+    /// Orders of the search.
+    #[arg(long, value_enum, value_delimiter = ',', default_value = "forward,binary")]
+    searches: Vec<Order>,
+
+    /// MR: the radius at which a search ends, in pixels.
+    #[arg(short = 'r', long, value_delimiter = ',', default_value = "32",
+          value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_RADIUS_LIMIT)))]
+    max_radius: Vec<u32>,
+
+    /// n: photons that a box has to hold.
+    #[arg(short = 'n', long, value_delimiter = ',', default_value = "25",
+          value_parser = clap::value_parser!(u32).range(1..))]
+    min_photons: Vec<u32>,
+
+    /// What counts outside the map.
+    #[arg(long, value_enum, value_delimiter = ',', default_value = "scale")]
+    edges: Vec<Edges>,
+
+    /// Samples a pass when the summed-area table is built.
+    #[arg(long, value_enum, value_delimiter = ',', default_value = "2,4")]
+    sat_samples: Vec<SatSamples>,
+
+    /// How often: 5 sets of up to 100 samples, or the thesis's 5 sets of up to 1000; slow cases take fewer.
+    #[arg(long, value_enum, default_value_t = ProtocolName::Short)]
+    protocol: ProtocolName,
+
+    /// Time to share out among all cases, such as 90s or 5m [default: 60s, or 10m for the thesis's protocol].
+    #[arg(long, value_parser = humantime::parse_duration)]
+    budget: Option<Duration>,
+
+    /// Write every sample to this file, anew after each case.
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+
+    /// Write a row for each case to this file.
+    #[arg(long, value_name = "FILE")]
+    csv: Option<PathBuf>,
+
+    /// Go on with a file that --json wrote, and keep writing to it; the other options have to be the same again,
+    /// except the budget, which is a new one.
+    #[arg(long, value_name = "FILE", conflicts_with = "json")]
+    resume: Option<PathBuf>,
+
+    /// OpenGL device: auto, egl, egl:INDEX, osmesa, or part of a renderer's name.
+    #[arg(long, default_value_t = DeviceChoice::Auto)]
+    device: DeviceChoice,
+
+    /// Time nothing, but compare two files that --json wrote: medians differ if all sets of one lie beyond all of the
+    /// other, and by 3 % or more.
+    #[arg(long, num_args = 2, value_names = ["OLD.json", "NEW.json"], exclusive = true)]
+    compare: Option<Vec<PathBuf>>,
+}
+
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+enum ProtocolName {
+    /// 5 sets of up to 100 samples.
+    Short,
+    /// 5 sets of up to 1000 samples (5.1).
+    Thesis,
+}
+
+pub(crate) fn run(args: &Args) -> Result<Outcome> {
+    if let Some([old, new]) = args.compare.as_deref() {
+        table::print_comparison(&Report::load(old)?, &Report::load(new)?)?;
+        return Ok(Outcome::Done);
+    }
+    // What can be refused without timing is refused first.
+    let json = args.json.as_ref().or(args.resume.as_ref());
+    for path in [json, args.csv.as_ref()].into_iter().flatten() {
+        check_writable(path)?;
+    }
+    let earlier = args.resume.as_deref().map(Report::load).transpose()?;
+    let settings = settings(args);
+    let gl = context::open(&args.device)?;
+    let maps = maps(args, gl.info().max_texture_size)?;
+    if let (Some(earlier), Some(path)) = (&earlier, &args.resume) {
+        earlier.check_resumable(path, &bench::empty_report(&gl, &settings, &maps))?;
+    }
+
+    let bar = progress_bar();
+    let mut saver = Saver { json, csv: args.csv.as_ref(), last: Instant::now(), took: Duration::ZERO };
+    let report = bench::run(&gl, &settings, &maps, earlier, &mut |report, progress| {
+        show(&bar, progress);
+        saver.save_if_due(report)
+    })?;
+    bar.finish_and_clear();
+    saver.save(&report)?;
+    table::print_report(&report, json.map(PathBuf::as_path))?;
+    if !report.runs.iter().any(|run| run.case.method.is_some()) {
+        bail!("no method was timed; the reasons are above");
+    }
+    Ok(Outcome::Done)
+}
+
+fn settings(args: &Args) -> BenchSettings {
+    let minute = Duration::from_secs(60);
+    let protocol = match args.protocol {
+        ProtocolName::Short => Protocol::within(args.budget.unwrap_or(minute)),
+        ProtocolName::Thesis => Protocol::thesis(args.budget.unwrap_or(10 * minute)),
+    };
+    BenchSettings {
+        methods: args.methods.clone(),
+        sat_samples: args.sat_samples.clone(),
+        searches: args.searches.clone(),
+        min_photons: args.min_photons.clone(),
+        max_radius: args.max_radius.clone(),
+        edges: args.edges.clone(),
+        ..BenchSettings::new(protocol)
+    }
+}
+
+/// Kinds in each size, files in their own; small ones first, so that a short budget leaves out the large ones.
+fn maps(args: &Args, max_side: u32) -> Result<Vec<MapSource>> {
+    let mut maps = Vec::new();
+    for map in &args.maps {
+        let kind = map.to_str().and_then(|name| Kind::from_str(name, false).ok());
+        if let Some(kind) = kind {
+            maps.extend(args.sizes.iter().map(|&size| MapSource::synthetic(kind, size, 1)));
+        } else {
+            maps.push(MapSource::given(map.display().to_string(), read_map(args, map, max_side)?));
+        }
+    }
+    maps.sort_by_key(|map| map.size().x * map.size().y);
+    Ok(maps)
+}
+
+fn read_map(args: &Args, map: &Path, max_side: u32) -> Result<varikernel::Image<u32>> {
+    let options = ReadOptions { channel: args.channel.as_deref(), max_side, ..ReadOptions::default() };
+    read_counts(map, &options).with_context(|| {
+        let kinds = Kind::value_variants().iter().filter_map(clap::ValueEnum::to_possible_value);
+        let kinds: Vec<_> = kinds.map(|kind| kind.get_name().to_owned()).collect();
+        format!("--map {}: neither a readable file nor one of {}", map.display(), kinds.join(", "))
+    })
+}
+
+fn parse_size(text: &str) -> Result<UVec2> {
+    if text.contains('x') {
+        super::synth::parse_size(text)
+    } else {
+        let side: u32 = text.parse().context("write a side as 512, or both as 640x480")?;
+        super::synth::parse_size(&format!("{side}x{side}"))
+    }
+}
+
+/// Hidden where stderr is no terminal.
+fn progress_bar() -> ProgressBar {
+    let style = ProgressStyle::with_template("{wide_bar} {pos}/{len} sets, {prefix}\n{msg}");
+    let bar = ProgressBar::new(0);
+    bar.with_style(style.unwrap_or_else(|error| unreachable!("a fixed template: {error}")))
+}
+
+fn show(bar: &ProgressBar, progress: &Progress) {
+    bar.set_length(progress.sets as u64);
+    bar.set_position(progress.sets_done as u64);
+    // Sets differ too much in length to tell the end from their number; the budget is what is sure.
+    bar.set_prefix(format!("at most {} s left", progress.budget_left.as_secs() + 1));
+    bar.set_message(progress.case.clone());
+}
+
+/// Writes the files after each case, unless writing would take more than a twentieth of the time.
+struct Saver<'a> {
+    json: Option<&'a PathBuf>,
+    csv: Option<&'a PathBuf>,
+    last: Instant,
+    took: Duration,
+}
+
+impl Saver<'_> {
+    fn save_if_due(&mut self, report: &Report) -> varikernel::Result<()> {
+        if self.last.elapsed() < 20 * self.took { Ok(()) } else { self.save(report) }
+    }
+
+    fn save(&mut self, report: &Report) -> varikernel::Result<()> {
+        let start = Instant::now();
+        self.json.map_or(Ok(()), |path| report.save(path))?;
+        self.csv.map_or(Ok(()), |path| report.save_csv(path))?;
+        self.last = Instant::now();
+        self.took = start.elapsed();
+        Ok(())
+    }
+}

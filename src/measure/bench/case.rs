@@ -1,0 +1,196 @@
+//! What one row of a timing run is about.
+
+use std::fmt;
+
+use serde::{Deserialize, Serialize};
+
+use super::settings::{BenchSettings, MapInfo};
+use crate::measure::Unit;
+use crate::settings::{Edges, Method, Order, SatSamples, Settings};
+
+/// What is timed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Stage {
+    /// One texel read and written: the unit.
+    Copy,
+    /// Four texels read and added.
+    Probe,
+    /// The intermediate structure, which depends on neither n, MR nor the search.
+    Build,
+    /// The search in a structure that is there, which does not depend on how a table was built.
+    Search,
+    /// Both: what a frame needs.
+    Frame,
+}
+
+impl Stage {
+    /// Its name in files.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Copy => "copy",
+            Self::Probe => "probe",
+            Self::Build => "build",
+            Self::Search => "search",
+            Self::Frame => "frame",
+        }
+    }
+}
+
+/// What tells a row from all others of a run; what has no effect on a stage is absent.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Case {
+    /// What is timed.
+    pub stage: Stage,
+    /// The method and, where it counts, how its structure is built: `brute-force`, `naive-mipmap`,
+    /// `averaged-mipmap`, `pyramid`, `sat` (search), `sat-doubling-4` (build and frame), `copy`, `probe`.
+    pub variant: String,
+    /// The map's name.
+    pub map: String,
+    /// The map's columns and rows.
+    pub size: [u32; 2],
+    /// The method.
+    pub method: Option<Method>,
+    /// Samples a pass in which the summed-area table is built.
+    pub sat_samples: Option<SatSamples>,
+    /// The order of the search.
+    pub search: Option<Order>,
+    /// n.
+    pub min_photons: Option<u32>,
+    /// MR.
+    pub max_radius: Option<u32>,
+    /// The edge rule.
+    pub edges: Option<Edges>,
+}
+
+impl Case {
+    fn unit(unit: Unit, map: &MapInfo) -> Self {
+        let stage = match unit {
+            Unit::Copy => Stage::Copy,
+            Unit::Probe => Stage::Probe,
+        };
+        Self {
+            stage,
+            variant: stage.name().to_owned(),
+            map: map.name.clone(),
+            size: map.size,
+            method: None,
+            sat_samples: None,
+            search: None,
+            min_photons: None,
+            max_radius: None,
+            edges: None,
+        }
+    }
+
+    fn of(stage: Stage, settings: &Settings, map: &MapInfo) -> Self {
+        let Settings { search, method, .. } = *settings;
+        let is_table = method == Method::SummedAreaTable;
+        let sat_samples = (is_table && stage != Stage::Search).then_some(settings.sat_samples);
+        let variant = match (method, sat_samples) {
+            (Method::BruteForce, _) => "brute-force".to_owned(),
+            (Method::NaiveMipmap, _) => "naive-mipmap".to_owned(),
+            (Method::AveragedMipmap, _) => "averaged-mipmap".to_owned(),
+            (Method::Pyramid, _) => "pyramid".to_owned(),
+            (Method::SummedAreaTable, None) => "sat".to_owned(),
+            (Method::SummedAreaTable, Some(samples)) => format!("sat-doubling-{}", samples.count()),
+        };
+        let searches = stage != Stage::Build;
+        Self {
+            stage,
+            variant,
+            map: map.name.clone(),
+            size: map.size,
+            method: Some(method),
+            sat_samples,
+            search: (searches && method != Method::NaiveMipmap).then_some(search.order),
+            min_photons: searches.then_some(search.min_photons),
+            max_radius: searches.then_some(search.max_radius),
+            edges: searches.then_some(search.edges),
+        }
+    }
+}
+
+impl fmt::Display for Case {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [width, height] = self.size;
+        write!(formatter, "{}", self.stage.name())?;
+        if self.method.is_some() {
+            write!(formatter, " {}", self.variant)?;
+        }
+        if let Some(order) = self.search {
+            write!(formatter, " {}", order_name(order))?;
+        }
+        if let (Some(n), Some(radius), Some(edges)) = (self.min_photons, self.max_radius, self.edges) {
+            write!(formatter, " n {n} MR {radius} edges {}", edges_name(edges))?;
+        }
+        write!(formatter, ", {} {width} x {height}", self.map)
+    }
+}
+
+/// The name in files.
+pub(super) fn order_name(order: Order) -> &'static str {
+    match order {
+        Order::Forward => "forward",
+        Order::Binary => "binary",
+    }
+}
+
+/// The name in files.
+pub(super) fn edges_name(edges: Edges) -> &'static str {
+    match edges {
+        Edges::Zero => "zero",
+        Edges::Scale => "scale",
+    }
+}
+
+/// What a case runs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Work {
+    Unit(Unit),
+    Pipeline(Settings),
+}
+
+/// Every case of a map, units first. A brute-force search is its whole frame, so only the frame is a case.
+pub(super) fn cases(settings: &BenchSettings, map: &MapInfo) -> Vec<(Case, Work)> {
+    let mut cases: Vec<(Case, Work)> =
+        [Unit::Copy, Unit::Probe].map(|unit| (Case::unit(unit, map), Work::Unit(unit))).into();
+    for stage in [Stage::Build, Stage::Search, Stage::Frame] {
+        for pipeline in settings.pipelines() {
+            if pipeline.method == Method::BruteForce && stage != Stage::Frame {
+                continue;
+            }
+            let case = Case::of(stage, &pipeline, map);
+            // The same build under another question, or the same search in a table built otherwise.
+            if !cases.iter().any(|(known, _)| *known == case) {
+                cases.push((case, Work::Pipeline(pipeline)));
+            }
+        }
+    }
+    cases
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use super::*;
+    use crate::measure::bench::Protocol;
+
+    #[test]
+    fn each_case_is_there_once() {
+        let map = MapInfo { name: "m".to_owned(), size: [4, 4], origin: String::new() };
+        let mut settings = BenchSettings::new(Protocol::within(Duration::from_secs(1)));
+        let count = |settings: &BenchSettings, stage| {
+            cases(settings, &map).iter().filter(|(case, _)| case.stage == stage).count()
+        };
+        // Pyramid and two tables are built; pyramid and table are searched; brute force is a frame as well. Two orders.
+        assert_eq!([Stage::Build, Stage::Search, Stage::Frame].map(|s| count(&settings, s)), [3, 4, 8]);
+        settings.edges = vec![Edges::Zero, Edges::Scale];
+        assert_eq!([Stage::Build, Stage::Search, Stage::Frame].map(|s| count(&settings, s)), [3, 8, 16]);
+        // The naive mipmap has one search of its own.
+        settings.methods = vec![Method::NaiveMipmap];
+        assert_eq!([Stage::Build, Stage::Search, Stage::Frame].map(|s| count(&settings, s)), [1, 2, 2]);
+    }
+}

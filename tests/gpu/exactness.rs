@@ -1,0 +1,134 @@
+//! What is exact past 2^24 and 2^32, what is refused, and that the limits are real.
+
+use glam::UVec2;
+use varikernel::measure::Difference;
+use varikernel::settings::{Edges, Exactness, Method, Search, Settings, Storage};
+use varikernel::{CountBounds, DensityMap, Error, Gl, Image, RadiusPipeline, reference};
+
+use crate::support::{Random, assert_same, egl, exact_variants, on_gpu, random_map, search};
+
+/// Random counts below 2^24: the total of 40 x 40 pixels is past 2^33.
+fn heavy() -> Image<u32> {
+    random_map(40, 40, 1 << 24)
+}
+
+#[test]
+fn totals_past_32_bits_are_exact_in_u32() {
+    let gl = egl();
+    let density = heavy();
+    let total: u64 = density.values().iter().map(|&count| u64::from(count)).sum();
+    assert!(total > 2 * u64::from(u32::MAX), "{total}");
+    for edges in [Edges::Zero, Edges::Scale] {
+        // Boxes of radius 5 stay below 2^32, so nothing is clamped and the table wraps.
+        for settings in exact_variants(search(900_000_000, 5, edges)) {
+            if settings.storage == Storage::U32 {
+                let expected = reference::radius(&density, settings.search);
+                assert_same(&on_gpu(&gl, &density, settings), &expected, &format!("{settings:?}"));
+            }
+        }
+    }
+}
+
+#[test]
+fn counts_are_clamped_to_n_where_boxes_could_wrap() {
+    let gl = egl();
+    // Many pixels of nearly 2^32 in one box: only clamping makes their sum fit.
+    let mut random = Random(3);
+    let density = Image::from_fn(UVec2::new(23, 31), |_, _| match random.below(40) {
+        0 => u32::MAX,
+        1..8 => random.below(9),
+        _ => 0,
+    });
+    for edges in [Edges::Zero, Edges::Scale] {
+        for settings in exact_variants(search(25, 20, edges)) {
+            if settings.storage == Storage::U32 {
+                let expected = reference::radius(&density, settings.search);
+                assert_same(&on_gpu(&gl, &density, settings), &expected, &format!("{settings:?}"));
+            }
+        }
+    }
+}
+
+fn refused(gl: &Gl, density: &Image<u32>, settings: Settings) -> bool {
+    let map = DensityMap::upload(gl, density, CountBounds::of(density, settings.search)).unwrap();
+    let mut pipeline = RadiusPipeline::new(gl, density.size(), map.format(), settings).unwrap();
+    match pipeline.render(&map) {
+        Ok(_) => false,
+        Err(Error::Inexact { .. }) => true,
+        Err(error) => panic!("{error}"),
+    }
+}
+
+#[test]
+fn boxes_that_exceed_32_bits_even_clamped_are_refused() {
+    let gl = egl();
+    let density = Image::filled(UVec2::splat(4), 4_000_000_000);
+    let u32_sums = Settings { search: search(3_000_000_000, 3, Edges::Zero), ..Settings::default() };
+    assert!(refused(&gl, &density, u32_sums));
+    // One photon less to ask for than what two pixels hold is fine: n clamps them.
+    let one_pixel = Settings { search: search(1_000, 3, Edges::Zero), ..Settings::default() };
+    assert!(!refused(&gl, &density, one_pixel));
+}
+
+#[test]
+fn f32_is_refused_past_2_to_24_and_rightly_so() {
+    let gl = egl();
+    // 262 million photons, in boxes of a million at most.
+    let density = random_map(512, 512, 2_001);
+    let total: u64 = density.values().iter().map(|&count| u64::from(count)).sum();
+    assert!(total > 1 << 24, "{total}");
+    let settings =
+        Settings { search: search(49_000, 16, Edges::Zero), storage: Storage::F32, ..Settings::default() };
+    assert!(refused(&gl, &density, settings));
+    assert!(!refused(&gl, &density, Settings { method: Method::Pyramid, ..settings }), "its boxes are small");
+
+    let waived = Settings { exactness: Exactness::Waived, limited_mask: true, ..settings };
+    let expected = reference::radius_by_table(&density, settings.search);
+    let found = on_gpu(&gl, &density, waived);
+    let difference = Difference::between(&found.radius, &expected.radius).unwrap();
+    assert!(difference.wrong_pixels > 0, "the refusal would be needless");
+    let in_u32 = on_gpu(&gl, &density, Settings { storage: Storage::U32, ..waived });
+    assert_same(&in_u32, &expected, "u32");
+}
+
+#[test]
+fn without_bounds_only_n_and_the_radius_can_prove_exactness() {
+    let gl = egl();
+    let density = random_map(16, 16, 3);
+    let render = |settings: Settings| {
+        let map = DensityMap::upload(&gl, &density, CountBounds::UNKNOWN).unwrap();
+        let mut pipeline = RadiusPipeline::new(&gl, density.size(), map.format(), settings).unwrap();
+        pipeline.render(&map).map(|radii| radii.read().unwrap())
+    };
+    let usual = Settings { search: search(25, 32, Edges::Scale), ..Settings::default() };
+    assert_eq!(render(usual).unwrap(), reference::radius(&density, usual.search).radius);
+    let large = Settings { search: search(1 << 30, 32, Edges::Scale), ..usual };
+    assert!(matches!(render(large), Err(Error::Inexact { .. })));
+    assert!(matches!(render(Settings { storage: Storage::F32, ..usual }), Err(Error::Inexact { .. })));
+}
+
+#[test]
+fn settings_outside_their_range_are_refused_by_name() {
+    let gl = egl();
+    let new = |method, min_photons, max_radius| {
+        let search = Search { min_photons, max_radius, ..search(1, 1, Edges::Zero) };
+        let settings = Settings { search, method, ..Settings::default() };
+        RadiusPipeline::new(&gl, UVec2::splat(4), varikernel::gl::TextureFormat::R32Uint, settings)
+    };
+    for (method, min_photons, max_radius, expected) in [
+        (Method::SummedAreaTable, 0, 8, "min_photons"),
+        (Method::SummedAreaTable, 5, 0, "max_radius"),
+        (Method::SummedAreaTable, 5, 32_768, "max_radius"),
+        (Method::NaiveMipmap, 5, 16_385, "max_radius"),
+    ] {
+        match new(method, min_photons, max_radius) {
+            Err(Error::Setting { name, .. }) => assert_eq!(name, expected),
+            other => panic!("{other:?}"),
+        }
+    }
+    assert!(new(Method::SummedAreaTable, 1, 32_767).is_ok());
+    let too_large = UVec2::new(gl.info().max_texture_size + 1, 1);
+    let format = varikernel::gl::TextureFormat::R32Uint;
+    let result = RadiusPipeline::new(&gl, too_large, format, Settings::default());
+    assert!(matches!(result, Err(Error::TooLarge { .. })));
+}

@@ -1,0 +1,144 @@
+//! Every shader is OpenGL 3.3 core and nothing more: under a loader that knows only its commands, and under
+//! glslangValidator.
+
+#![expect(unsafe_code, reason = "a loader is wrapped")]
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::ffi::CStr;
+use std::process::Command;
+
+use varikernel::gl::{ShaderSource, TextureFormat};
+use varikernel::pipeline::shader_sources;
+use varikernel::settings::{
+    Edges, Faults, Matching, Method, Order, SatSamples, Search, Settings, Split, Storage,
+};
+use varikernel::{CountBounds, DensityMap, Gl, RadiusPipeline, context, reference};
+
+use crate::support::{egl, random_map, search};
+
+const CORE_COMMANDS: &str = include_str!("../gl33-core-commands.txt");
+
+/// A context in which every command outside of OpenGL 3.3 core is null: glow panics when one is called.
+fn strict(candidate: &context::Candidate) -> Gl {
+    let known: BTreeSet<&str> = CORE_COMMANDS.lines().filter(|line| !line.starts_with('#')).collect();
+    assert_eq!(known.len(), 344);
+    // SAFETY: addresses are passed on or hidden.
+    unsafe {
+        candidate.open_through(|name: &CStr, address| {
+            if known.contains(name.to_str().unwrap()) { address } else { std::ptr::null() }
+        })
+    }
+    .unwrap()
+}
+
+/// Every setting that changes a shader, in all combinations that differ.
+fn all_settings() -> Vec<Settings> {
+    let mut all = Vec::new();
+    for method in Method::ALL {
+        for order in [Order::Forward, Order::Binary] {
+            for edges in [Edges::Zero, Edges::Scale] {
+                for storage in [Storage::F32, Storage::U32] {
+                    // The second n needs products of 64 bits.
+                    for (min_photons, limited_mask) in [(25, true), (25, false), (u32::MAX, false)] {
+                        let search = Search { order, ..search(min_photons, 32, edges) };
+                        let base = Settings { search, method, storage, limited_mask, ..Settings::default() };
+                        all.push(base);
+                        all.push(Settings { split: Split::Odd, matching: Matching::Modulo, ..base });
+                        all.push(Settings { split: Split::Odd, faults: Faults::AS_PRINTED, ..base });
+                        all.push(Settings { sat_samples: SatSamples::Sixteen, ..base });
+                    }
+                }
+            }
+        }
+    }
+    all
+}
+
+fn all_sources() -> Vec<ShaderSource> {
+    let mut sources = BTreeMap::new();
+    for settings in all_settings() {
+        for format in [TextureFormat::R32Uint, TextureFormat::R32Float] {
+            for source in shader_sources(format, &settings) {
+                sources.insert(source.fragment(), source);
+            }
+        }
+    }
+    sources.into_values().collect()
+}
+
+#[test]
+fn every_shader_passes_glslang_validator_and_enables_no_extension() {
+    let folder = tempfile::tempdir().unwrap();
+    let sources = all_sources();
+    assert!(sources.len() > 60, "{} shaders", sources.len());
+    let mut files = Vec::new();
+    for (number, source) in sources.iter().enumerate() {
+        let text = source.fragment();
+        assert!(text.starts_with("#version 330 core\n") && !text.contains("#extension"));
+        let file = folder.path().join(format!("{number}.frag"));
+        std::fs::write(&file, text).unwrap();
+        files.push(file);
+    }
+    let vertex = folder.path().join("full_screen.vert");
+    std::fs::write(&vertex, sources[0].vertex()).unwrap();
+    files.push(vertex);
+    let validate = |files: &[std::path::PathBuf]| {
+        Command::new("glslangValidator")
+            .args(files)
+            .output()
+            .unwrap_or_else(|error| panic!("glslangValidator (Debian: glslang-tools) can't be run: {error}"))
+    };
+    let output = validate(&files);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stdout));
+
+    // The validator does refuse what 3.3 lacks.
+    let newer = folder.path().join("newer.frag");
+    std::fs::write(&newer, "#version 330 core\nout int x; void main() { x = findMSB(8); }").unwrap();
+    assert!(!validate(&[newer]).status.success());
+}
+
+#[test]
+fn every_method_runs_on_the_commands_of_3_3_core_alone() {
+    let density = random_map(12, 19, 4);
+    let (candidates, _) = context::candidates();
+    for candidate in &candidates {
+        let gl = strict(candidate);
+        let map =
+            DensityMap::upload(&gl, &density, CountBounds::of(&density, search(25, 8, Edges::Zero))).unwrap();
+        for settings in all_settings() {
+            if settings.search.min_photons == 25 && settings.faults == Faults::NONE {
+                let mut pipeline = RadiusPipeline::new(&gl, map.size(), map.format(), settings).unwrap();
+                let radii = pipeline.render(&map).unwrap().read().unwrap();
+                if settings.method.is_exact() {
+                    assert_eq!(
+                        radii,
+                        reference::radius_by_table(&density, settings.search).radius,
+                        "{settings:?}"
+                    );
+                }
+            }
+        }
+        let ((), sample) = varikernel::gl::time(&gl, || Ok(())).unwrap();
+        assert!(sample.query.as_secs() < 60, "{sample:?}");
+    }
+}
+
+#[test]
+fn the_strict_loader_sees_a_command_outside_of_core() {
+    use glow::HasContext as _;
+    let (candidates, _) = context::candidates();
+    let gl = strict(&candidates[0]);
+    let result = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
+        // SAFETY: the context is current; glTexStorage2D is of OpenGL 4.2, so glow panics before calling anything.
+        unsafe { gl.glow().tex_storage_2d(glow::TEXTURE_2D, 1, glow::R8, 1, 1) };
+    }));
+    assert!(result.is_err());
+}
+
+#[test]
+fn a_refused_shader_tells_the_log_and_the_numbered_source() {
+    let source = all_sources().remove(0);
+    let listing = source.listing();
+    assert!(listing.contains("file 1: glsl/") && listing.contains("1:1 "), "{listing}");
+    drop(egl());
+}

@@ -1,0 +1,15 @@
+//! Timing runs on a real context, as a library and as a program.
+
+#![expect(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
+mod program;
+mod runs;
+mod timer;
+
+use varikernel::Gl;
+use varikernel::context::{self, DeviceChoice};
+
+/// EGL, or the reason why it does not work.
+fn egl() -> Gl {
+    context::open(&DeviceChoice::Egl(None)).unwrap_or_else(|error| panic!("{error}"))
+}
