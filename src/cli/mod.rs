@@ -7,22 +7,32 @@ pub(crate) mod output;
 mod radius;
 mod synth;
 
+use std::io::{self, IsTerminal as _};
+
 use anyhow::Result;
 use clap::{ArgAction, Parser, Subcommand};
 use tracing_subscriber::EnvFilter;
+
+const EXAMPLES: &str = "\
+Examples:
+  varikernel synth caustic -o map.exr          make a map to try things on
+  varikernel radius map.exr -o radius.png      a picture of its radius map
+  varikernel radius map.exr -o radius.exr --verify --method pyramid
+  varikernel compare radius.exr other.npy      how two maps differ
+  varikernel devices                           the OpenGL devices found here";
 
 /// Variable-kernel radius maps from photon density maps, exact, in OpenGL 3.3 core.
 ///
 /// For each pixel of a map of photon counts: the radius of the smallest box that holds at least n photons
 /// (E. W. Bjønnes, Oslo 2010). Exit codes: 0 done, 1 the maps differ, 2 it could not be done.
 #[derive(Debug, Parser)]
-#[command(version, max_term_width = 100, arg_required_else_help = true)]
+#[command(version, max_term_width = 100, arg_required_else_help = true, after_help = EXAMPLES)]
 pub(crate) struct Cli {
     #[command(subcommand)]
     verb: Verb,
 
     /// Log what happens to stderr; twice for details.
-    #[arg(short, long, global = true, action = ArgAction::Count)]
+    #[arg(short, long, global = true, action = ArgAction::Count, display_order = 100)]
     pub(crate) verbose: u8,
 }
 
@@ -60,5 +70,6 @@ pub(crate) fn log_to_stderr(verbose: u8) {
         _ => "debug",
     };
     let filter = EnvFilter::try_from_default_env().unwrap_or_else(|_| EnvFilter::new(level));
-    tracing_subscriber::fmt().with_env_filter(filter).with_writer(std::io::stderr).init();
+    let colours = io::stderr().is_terminal();
+    tracing_subscriber::fmt().with_env_filter(filter).with_ansi(colours).with_writer(io::stderr).init();
 }

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write as _};
 
-use anyhow::Result;
+use anyhow::{Context as _, Result};
 use comfy_table::presets::NOTHING;
 use comfy_table::{ContentArrangement, Table};
 use serde::Serialize;
@@ -18,9 +18,7 @@ pub(crate) fn print_json(value: &impl Serialize) -> Result<()> {
 /// Text and a newline. A closed pipe comes back as an error instead of a panic.
 pub(crate) fn print(text: &str) -> Result<()> {
     let mut stdout = io::stdout().lock();
-    writeln!(stdout, "{text}")?;
-    stdout.flush()?;
-    Ok(())
+    writeln!(stdout, "{text}").and_then(|()| stdout.flush()).context("the answer could not be printed")
 }
 
 /// A table of names and values for people.

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::Result;
+use anyhow::{Result, anyhow, bail};
 use serde::Serialize;
 use varikernel::context::{self, DeviceChoice};
 use varikernel::exactness::Plan;
@@ -14,7 +14,7 @@ use varikernel::measure::{Difference, RadiusSummary, total_photons};
 use varikernel::settings::{
     Edges, Exactness, Faults, Matching, Method, Order, SatSamples, Search, Settings, Split, Storage,
 };
-use varikernel::{CountBounds, DensityMap, Image, RadiusPipeline, reference};
+use varikernel::{CountBounds, DensityMap, Error, Image, RadiusPipeline, reference};
 
 use super::{Outcome, output};
 
@@ -25,15 +25,17 @@ pub(crate) struct Args {
     map: PathBuf,
 
     /// Radius map to write: .exr (u32 channel "radius", settings as attributes), .npy (u32), or .png (a picture).
-    #[arg(short, long)]
+    #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
 
-    /// n: photons that a box has to hold.
-    #[arg(short = 'n', long, default_value_t = 25)]
+    /// n: photons that a box has to hold, at least 1.
+    #[arg(short = 'n', long, default_value_t = 25, value_name = "N", value_parser = whole_number)]
+    #[arg(allow_negative_numbers = true)]
     min_photons: u32,
 
-    /// MR: the radius at which the search ends, in pixels; pixels that find too few photons get it.
-    #[arg(short = 'r', long, default_value_t = 32)]
+    /// MR: the radius at which the search ends, in pixels, 1 to 32767; pixels that find too few photons get it.
+    #[arg(short = 'r', long, default_value_t = 32, value_name = "MR", value_parser = whole_number)]
+    #[arg(allow_negative_numbers = true)]
     max_radius: u32,
 
     /// What counts outside the map (thesis 3.1).
@@ -81,7 +83,7 @@ pub(crate) struct Args {
     limited_mask: Option<PathBuf>,
 
     /// Channel to read if the EXR has several.
-    #[arg(long)]
+    #[arg(long, value_name = "NAME")]
     channel: Option<String>,
 
     /// OpenGL device: auto, egl, egl:INDEX, osmesa, or part of a renderer's name.
@@ -106,11 +108,13 @@ struct Report<'a> {
     version: &'static str,
     map: MapReport<'a>,
     output: &'a Path,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    limited_mask: Option<&'a Path>,
     settings: Settings,
     device: &'a DeviceInfo,
     plan: Plan,
     radius: RadiusSummary,
-    stages: Vec<Stage>,
+    stages: Vec<Timing>,
     #[serde(skip_serializing_if = "Option::is_none")]
     verify: Option<Difference>,
 }
@@ -124,13 +128,13 @@ struct MapReport<'a> {
 }
 
 #[derive(Serialize)]
-struct Stage {
+struct Timing {
     stage: &'static str,
     query_ms: f64,
     wall_ms: f64,
 }
 
-impl Stage {
+impl Timing {
     fn new(stage: &'static str, sample: Sample) -> Self {
         let milliseconds = |time: std::time::Duration| 1e3 * time.as_secs_f64();
         Self { stage, query_ms: milliseconds(sample.query), wall_ms: milliseconds(sample.wall) }
@@ -140,22 +144,20 @@ impl Stage {
 pub(crate) fn run(args: &Args) -> Result<Outcome> {
     // What can be refused without computing is refused first.
     let settings = settings(args);
-    settings.validate()?;
-    for path in [Some(&args.output), args.limited_mask.as_ref()].into_iter().flatten() {
-        Format::of(path)?;
-        check_writable(path)?;
-    }
-    let gl = context::open(&args.device)?;
-    let options = ReadOptions {
-        channel: args.channel.as_deref(),
-        max_side: gl.info().max_texture_size,
-        ..ReadOptions::default()
-    };
+    let explain = |error| in_words_of_options(error, &args.map);
+    settings.validate().map_err(explain)?;
+    check_files(args)?;
+    let options = ReadOptions { channel: args.channel.as_deref(), ..ReadOptions::default() };
     let counts = read_counts(&args.map, &options)?;
+    tracing::info!(map = %args.map.display(), size = %counts.size(), "read");
+    let gl = context::open(&args.device)?;
+    tracing::info!(renderer = gl.info().renderer, "opened");
+    check_fits(args, &counts, gl.info())?;
 
     let density = DensityMap::upload(&gl, &counts, CountBounds::of(&counts, settings.search))?;
-    let mut pipeline = RadiusPipeline::new(&gl, counts.size(), density.format(), settings)?;
-    let plan = pipeline.plan(&density)?;
+    let mut pipeline =
+        RadiusPipeline::new(&gl, counts.size(), density.format(), settings).map_err(explain)?;
+    let plan = pipeline.plan(&density).map_err(explain)?;
     let ((), build) = gl::time(&gl, || pipeline.build(&density))?;
     let (radii, search) = gl::time(&gl, || pipeline.search(&density))?;
     let radii = reference::Radii {
@@ -175,6 +177,8 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
         write_counts(path, "limited", &mask, &attributes(args, &settings, gl.info()))?;
     }
 
+    tracing::info!(output = %args.output.display(), "written");
+
     let report = Report {
         version: env!("CARGO_PKG_VERSION"),
         map: MapReport {
@@ -184,11 +188,12 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
             max_count: counts.values().iter().copied().max().unwrap_or(0),
         },
         output: &args.output,
+        limited_mask: args.limited_mask.as_deref(),
         settings,
         device: gl.info(),
         plan,
         radius: RadiusSummary::of(&radii),
-        stages: vec![Stage::new("build", build), Stage::new("search", search)],
+        stages: vec![Timing::new("build", build), Timing::new("search", search)],
         verify,
     };
     if args.json {
@@ -198,6 +203,63 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     }
     let differs = report.verify.is_some_and(|difference| !difference.is_none());
     Ok(if differs { Outcome::Differs } else { Outcome::Done })
+}
+
+fn whole_number(text: &str) -> Result<u32, String> {
+    text.parse().map_err(|_| format!("give a whole number from 1 to {}", u32::MAX))
+}
+
+/// An error of the library, with the option to change and the file at fault.
+fn in_words_of_options(error: Error, map: &Path) -> anyhow::Error {
+    match error {
+        Error::Setting { name, value, reason } => {
+            anyhow!("--{} {value} is not possible: {reason}", name.replace('_', "-"))
+        }
+        Error::Inexact { reason, remedy } => anyhow!(
+            "{}: the result would not be exact: {reason}\nhelp: {remedy}, or add --allow-inexact to see how wrong it gets",
+            map.display()
+        ),
+        other => other.into(),
+    }
+}
+
+/// Refuses outputs that can't be written, and ones that would replace the map or each other.
+fn check_files(args: &Args) -> Result<()> {
+    let mut taken = vec![("the map", place_of(&args.map))];
+    for (name, path) in [("--output", Some(&args.output)), ("--limited-mask", args.limited_mask.as_ref())] {
+        let Some(path) = path else { continue };
+        Format::of(path)?;
+        check_writable(path)?;
+        let place = place_of(path);
+        if let Some((other, _)) = taken.iter().find(|(_, other)| *other == place) {
+            bail!("{}: {name} is the same file as {other}\nhelp: choose another name", path.display());
+        }
+        taken.push((name, place));
+    }
+    Ok(())
+}
+
+/// The file itself, whichever way it is named and whether or not it exists.
+fn place_of(path: &Path) -> PathBuf {
+    path.canonicalize().unwrap_or_else(|_| {
+        let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
+        folder.canonicalize().unwrap_or_default().join(path.file_name().unwrap_or_default())
+    })
+}
+
+fn check_fits(args: &Args, counts: &Image<u32>, device: &DeviceInfo) -> Result<()> {
+    let (size, limit) = (counts.size(), device.max_texture_size);
+    if size.max_element() > limit {
+        bail!(
+            "{}: {} x {} pixels, larger than the textures of {}, at most {limit} a side\n\
+             help: give a smaller map, cut it into parts, or choose another --device",
+            args.map.display(),
+            size.x,
+            size.y,
+            device.renderer
+        );
+    }
+    Ok(())
 }
 
 fn settings(args: &Args) -> Settings {
@@ -273,9 +335,9 @@ fn print_report(report: &Report<'_>) -> Result<()> {
         ("renderer", report.device.renderer.clone()),
         ("radius", format!("{min} to {max} pixels, mean {mean:.3}, median {median}")),
         ("limited", format!("{:.3} % found too few photons", 100.0 * limited_share)),
-        ("exact", if report.plan.exact { "yes" } else { "not proved" }.to_owned()),
+        ("exact", exactness(report).to_owned()),
     ];
-    for Stage { stage, query_ms, wall_ms } in &report.stages {
+    for Timing { stage, query_ms, wall_ms } in &report.stages {
         facts
             .push((stage, format!("{query_ms:.3} ms by GPU query, {wall_ms:.3} ms by the clock, first run")));
     }
@@ -283,5 +345,20 @@ fn print_report(report: &Report<'_>) -> Result<()> {
         facts.push(("verify", format!("against the definition: {difference}")));
     }
     facts.push(("written", report.output.display().to_string()));
+    if let Some(mask) = report.limited_mask {
+        facts.push(("", mask.display().to_string()));
+    }
     output::print_facts(&facts)
+}
+
+fn exactness(report: &Report<'_>) -> &'static str {
+    if report.plan.exact {
+        "yes"
+    } else if !report.settings.method.is_exact() {
+        "no, the method approximates"
+    } else if report.settings.faults != Faults::NONE {
+        "no, the listings run with their printed faults"
+    } else {
+        "not proved, sums may round or wrap"
+    }
 }

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use anyhow::{Context as _, Result, bail};
+use clap::ValueEnum as _;
 use glam::UVec2;
 use varikernel::image::{Attribute, Format, ReadOptions, check_writable, write_counts};
 use varikernel::measure::total_photons;
@@ -17,19 +18,19 @@ pub(crate) struct Args {
     kind: Kind,
 
     /// File to write: .exr or .npy (u32), or .png (16-bit grey, counts up to 65535).
-    #[arg(short, long)]
+    #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
 
     /// Columns and rows.
     #[arg(long, default_value = "512x512", value_parser = parse_size, value_name = "WIDTHxHEIGHT")]
     size: UVec2,
 
-    /// Photons per pixel on average; each kind has its usual one.
-    #[arg(long)]
+    /// Photons per pixel on average, fractions too; each kind has its usual one.
+    #[arg(long, value_name = "NUMBER", allow_negative_numbers = true)]
     density: Option<f64>,
 
-    /// The same seed gives the same map.
-    #[arg(long, default_value_t = 1)]
+    /// A whole number; the same seed gives the same map.
+    #[arg(long, default_value_t = 1, allow_negative_numbers = true)]
     seed: u64,
 }
 
@@ -37,10 +38,7 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     Format::of(&args.output)?;
     check_writable(&args.output)?;
     let density = args.density.unwrap_or_else(|| args.kind.usual_density());
-    let photons = density * f64::from(args.size.x) * f64::from(args.size.y);
-    if !(0.0..=1e12).contains(&photons) {
-        bail!("--density {density} is not possible: give 0 or more photons per pixel, 10^12 in all at most");
-    }
+    check_density(args, density)?;
     let map = synth::map(args.kind, args.size, density, args.seed);
     let kind = format!("{:?}", args.kind).to_lowercase();
     let attributes = [
@@ -57,6 +55,27 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
         ("written", args.output.display().to_string()),
     ])?;
     Ok(Outcome::Done)
+}
+
+/// Refuses what can't be drawn or would overflow the count of a pixel.
+fn check_density(args: &Args, density: f64) -> Result<()> {
+    let pixels = f64::from(args.size.x) * f64::from(args.size.y);
+    let most = match args.kind {
+        Kind::Empty => 0.0,
+        // Half of the pixels hold twice the mean.
+        Kind::Checkerboard => f64::from(u32::MAX) / 2.0,
+        // One by one, and all may land in one pixel.
+        _ => f64::from(u32::MAX) / pixels,
+    };
+    if !(0.0..=most).contains(&density) {
+        let kind = args.kind.to_possible_value().unwrap_or_else(|| unreachable!("no kind is hidden"));
+        let UVec2 { x, y } = args.size;
+        bail!(
+            "--density {density} is not possible: {} of {x} x {y} pixels takes 0 to {most} photons per pixel",
+            kind.get_name()
+        );
+    }
+    Ok(())
 }
 
 /// 640x480, within what can be read again.

@@ -175,6 +175,13 @@ pub fn open(choice: &DeviceChoice) -> Result<Gl> {
             Err(error) => answers.push(format!("{} ({}): {error}", candidate.choice, candidate.description)),
         }
     }
+    if answers.is_empty() {
+        let known: Vec<_> = candidates.iter().map(|candidate| candidate.choice.to_string()).collect();
+        answers.push(match known.as_slice() {
+            [] => "nothing: this was built without egl and osmesa".to_owned(),
+            known => format!("nothing: there is no such device; there are {}", known.join(", ")),
+        });
+    }
     Err(Error::NoContext(no_context(choice, &answers)))
 }
 
@@ -187,19 +194,16 @@ fn is_named(gl: &Gl, candidate: &Candidate, choice: &DeviceChoice) -> bool {
 }
 
 fn no_context(choice: &DeviceChoice, answers: &[String]) -> String {
-    let tried = if answers.is_empty() {
-        "nothing to try: no such device, or the program was built without egl and osmesa".to_owned()
-    } else {
-        answers.join("\n  ")
-    };
+    let tried = answers.join("\n  ");
     format!(
         "no usable OpenGL 3.3 context for --device {choice}; tried:\n  {tried}\n\
          help: install Mesa's software renderer, which needs no GPU and no display:\n  \
          Debian, Ubuntu: sudo apt-get install libegl1 libgl1-mesa-dri\n  \
          Fedora:         sudo dnf install mesa-libEGL mesa-dri-drivers\n  \
          Arch:           sudo pacman -S mesa libglvnd\n  \
-         (OSMesa: libosmesa6 or mesa-libOSMesa, up to Mesa 25.0. A GPU in a container needs its driver's EGL\n  \
-         library and vendor JSON: for NVIDIA, NVIDIA_DRIVER_CAPABILITIES must include \"graphics\".)"
+         (OSMesa: libosmesa6 or mesa-libOSMesa, up to Mesa 25.0. A GPU in a container\n  \
+         needs its driver's EGL library and vendor JSON: for NVIDIA,\n  \
+         NVIDIA_DRIVER_CAPABILITIES must include \"graphics\".)"
     )
 }
 

@@ -77,6 +77,14 @@ impl Difference {
         Ok(difference)
     }
 
+    /// The part of the pixels that differ, from 0 to 1.
+    #[must_use]
+    pub fn share(&self) -> f64 {
+        #[expect(clippy::cast_precision_loss, reason = "a share is rounded anyway")]
+        let share = self.wrong_pixels as f64 / self.pixels as f64;
+        share
+    }
+
     /// Whether no pixel differs.
     #[must_use]
     pub fn is_none(&self) -> bool {
@@ -91,11 +99,12 @@ impl fmt::Display for Difference {
         }
         write!(
             formatter,
-            "{} of {} pixels differ, by {:.4} on average over all and {} at most; first at",
+            "{} of {} pixels differ, by {:.4} on average over all and {} at most; first at ",
             self.wrong_pixels, self.pixels, self.mean, self.max
         )?;
-        for Place { x, y, a, b } in &self.first {
-            write!(formatter, " ({x}, {y}): {a} and {b};")?;
+        for (index, Place { x, y, a, b }) in self.first.iter().enumerate() {
+            let separator = if index == 0 { "" } else { "; " };
+            write!(formatter, "{separator}({x}, {y}): {a} and {b}")?;
         }
         Ok(())
     }
@@ -117,6 +126,12 @@ mod tests {
         assert_eq!(difference.first[0], Place { x: 1, y: 0, a: 5, b: 2 });
         assert_eq!(difference.first[1], Place { x: 1, y: 1, a: 4, b: 5 });
         assert!(!difference.is_none());
+        assert!((difference.share() - 0.5).abs() < f64::EPSILON);
+        assert_eq!(
+            difference.to_string(),
+            "2 of 4 pixels differ, by 1.0000 on average over all and 3 at most; \
+             first at (1, 0): 5 and 2; (1, 1): 4 and 5"
+        );
         assert!(Difference::between(&a, &a).unwrap().is_none());
     }
 
