@@ -81,6 +81,9 @@ fn the_page_holds_every_table_figure_and_claim_and_needs_no_network() {
     for outside in ["src=", "<link", "@import", "url("] {
         assert!(!html.contains(outside), "{outside} asks for another file");
     }
+    let files: Vec<String> = report.files().into_iter().map(|(path, _)| path).collect();
+    assert_eq!(files.len(), 2 + 8 + 13 + 1);
+    assert_eq!(files[..3], ["report.html", "claims.csv", "tables/a1.csv"]);
     assert!(claims::verdict_counts(&judged).iter().all(|&(_, count)| count > 0), "every verdict occurs");
 }
 

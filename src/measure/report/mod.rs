@@ -10,7 +10,8 @@ use askama::Template as _;
 pub use plot::{figure_svg, orders_svg};
 pub use view::table_csv;
 
-use crate::measure::thesis::claims::{Evidence, Judged};
+use crate::measure::thesis::claims::{self, Evidence, Judged};
+use crate::measure::thesis::{figures, tables};
 
 /// What the page tells.
 #[derive(Clone, Copy, Debug)]
@@ -35,5 +36,33 @@ impl Report<'_> {
     #[must_use]
     pub fn html(&self) -> String {
         view::Page::of(self).render().expect("a string takes all that is written")
+    }
+
+    /// Every file of a reproduction but the raw samples, as (path inside the folder, text): `report.html`,
+    /// `claims.csv`, `tables/a1.csv` to `a8.csv`, `figures/5.1.svg` to `5.13.svg`.
+    ///
+    /// # Panics
+    /// Never: memory takes all that is written.
+    #[must_use]
+    pub fn files(&self) -> Vec<(String, String)> {
+        let mut claims = Vec::new();
+        claims::write_csv(&mut claims, self.judged).expect("memory takes all that is written");
+        let claims = String::from_utf8(claims).expect("CSV of text is text");
+        let measured = &self.evidence.measurements;
+        let mut files = vec![("report.html".to_owned(), self.html()), ("claims.csv".to_owned(), claims)];
+        files.extend(
+            tables::all()
+                .iter()
+                .map(|table| (format!("tables/a{}.csv", table.number), table_csv(table, measured))),
+        );
+        files.extend(
+            figures::ALL
+                .iter()
+                .map(|figure| (format!("figures/5.{}.svg", figure.number), figure_svg(figure, measured))),
+        );
+        if !self.evidence.orders.is_empty() {
+            files.push(("figures/orders.svg".to_owned(), orders_svg(&self.evidence.orders)));
+        }
+        files
     }
 }

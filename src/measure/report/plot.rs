@@ -14,7 +14,11 @@ use crate::measure::thesis::figures::Figure;
 use crate::measure::thesis::quantity::{Card, Measurements};
 use crate::measure::thesis::tables::printed_series;
 
-const SIZE: (u32, u32) = (600, 400);
+const WIDTH: u32 = 600;
+/// Without the legend.
+const HEIGHT: u32 = 330;
+/// Of a row of the legend.
+const LEGEND_ROW: u32 = 20;
 const FONT: &str = "sans-serif";
 const GRID: RGBColor = RGBColor(0xcc, 0xcc, 0xcc);
 /// One colour a quantity, apart in hue and lightness.
@@ -126,7 +130,9 @@ fn draw(axes: &Axes, lines: &[Line]) -> String {
     let x = PowersOf { labels: axes.x_labels.clone(), range: x.0 / 1.15..x.1 * 1.15 };
     let mut svg = String::new();
     {
-        let area = SVGBackend::with_string(&mut svg, SIZE).into_drawing_area();
+        let rows = u32::try_from(lines.len().div_ceil(2)).unwrap_or(u32::MAX);
+        let size = (WIDTH, HEIGHT + LEGEND_ROW * rows + 10);
+        let area = SVGBackend::with_string(&mut svg, size).into_drawing_area();
         let drawn = if axes.logarithmic {
             let range = y.0 / 1.5..y.1 * 1.5;
             let labels = decades(&range);
@@ -148,8 +154,7 @@ fn draw_lines<'a, Y: Ranged<ValueType = f64> + ValueFormatter<f64>>(
 ) -> Result<(), DrawingAreaErrorKind<<SVGBackend<'a> as DrawingBackend>::ErrorType>> {
     area.fill(&WHITE)?;
     // The legend has its own strip, so that it hides no line.
-    let rows = u32::try_from(lines.len().div_ceil(2)).unwrap_or(u32::MAX);
-    let (plot, legend) = area.split_vertically(SIZE.1 - 20 * rows - 10);
+    let (plot, legend) = area.split_vertically(HEIGHT);
     let mut chart = ChartBuilder::on(&plot)
         .caption(&axes.title, (FONT, 17))
         .margin(10)

@@ -6,8 +6,8 @@
 use glam::UVec2;
 
 use crate::image::Image;
-use crate::reference;
-use crate::settings::{Edges, Order, Search};
+use crate::reference::{self, Inside};
+use crate::settings::{Edges, Faults, Order, Search, Split};
 
 /// The pixel whose radius is asked for.
 pub const PIXEL: UVec2 = UVec2::new(3, 3);
@@ -40,10 +40,19 @@ pub fn radii() -> (u32, u32) {
     (at(&reference::radius(&map(), SEARCH)), at(&reference::naive_mipmap(&map(), SEARCH)))
 }
 
+/// Fetches of a pyramid for radius 1 and 2 around [`PIXEL`], as Figure 3.4 counts them.
+#[must_use]
+pub fn pyramid_fetches(split: Split) -> [usize; 2] {
+    [1, 2].map(|radius| {
+        let inside = Inside::of_box(UVec2::splat(8), PIXEL.x, PIXEL.y, radius);
+        reference::pyramid::cover(inside, 3, split, Faults::NONE).blocks.len()
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::reference::{Inside, Table};
+    use crate::reference::Table;
 
     #[test]
     fn the_map_has_the_photons_of_figures_3_2_to_3_4() {
@@ -58,5 +67,10 @@ mod tests {
     #[test]
     fn the_naive_mipmap_answers_4_where_2_is_enough() {
         assert_eq!(radii(), (2, 4));
+    }
+
+    #[test]
+    fn the_first_listing_takes_the_fetches_of_figure_3_4() {
+        assert_eq!(pyramid_fetches(Split::Odd), [6, 13]);
     }
 }

@@ -2,7 +2,7 @@
 
 use super::claims::{Evidence, Judgement, LargerSmaller, Verdict};
 use super::counted::{self, PyramidCost};
-use super::{density, example};
+use super::{density, example, listings};
 use crate::measure::Difference;
 use crate::settings::Split;
 
@@ -27,7 +27,7 @@ pub(super) fn counted(id: &str, evidence: &Evidence) -> Option<Judgement> {
         "pyramid-fetches-8" => {
             fetches(evidence, 8, |cost| cost.fetches.0 == 34 && cost.brute_force_fetches == 289)
         }
-        "figure-3-4" => figure_3_4(evidence),
+        "figure-3-4" => figure_3_4(),
         "stack-of-5" => stack(evidence),
         "naive-mipmap" => {
             let (right, naive) = example::radii();
@@ -89,8 +89,17 @@ pub(super) fn counted(id: &str, evidence: &Evidence) -> Option<Judgement> {
     })
 }
 
+/// n of the decisions that a rounded ratio is tried on.
+const BRINK_PHOTONS: u32 = 1000;
+
 /// The answer to a claim of [`Group::Listing`](super::claims::Group).
 pub(super) fn listing(id: &str, evidence: &Evidence) -> Option<Judgement> {
+    let (misjudged, judged) = listings::misjudged_by_float_ratio(counted::MAX_RADIUS, BRINK_PHOTONS);
+    let ratio_note = format!(
+        "At the brink, {misjudged} of {judged} decisions are wrong at MR = {}, n = {BRINK_PHOTONS} if each operation \
+         rounds correctly, which GLSL does not promise of a division.",
+        counted::MAX_RADIUS
+    );
     let (fault, harmless) = match id {
         "listing-clamp" => ("clamp_to_63", "It is right for maps of up to 64 x 64."),
         "listing-border" => (
@@ -115,10 +124,7 @@ pub(super) fn listing(id: &str, evidence: &Evidence) -> Option<Judgement> {
         "listing-strip" => {
             ("forgotten_strip", "A strip that alone is left beside an odd corner is never sampled.")
         }
-        "listing-ratio" => (
-            "float_ratio",
-            "Rounding decides wrongly in rare cases: 11 of 12,242 triples at MR = 32, n = 1000.",
-        ),
+        "listing-ratio" => ("float_ratio", ratio_note.as_str()),
         _ => return None,
     };
     let rows: Vec<_> = evidence.faults.iter().filter(|row| row.fault == fault).collect();
@@ -152,22 +158,23 @@ fn costs_at(evidence: &Evidence, radius: u32) -> Vec<(&PyramidCost, &'static str
 
 fn fetches(evidence: &Evidence, radius: u32, holds: impl Fn(&PyramidCost) -> bool) -> Judgement {
     let costs = costs_at(evidence, radius);
+    if costs.is_empty() {
+        return Judgement::untested("nothing was counted");
+    }
     let cases: Vec<bool> = costs.iter().map(|(cost, _)| holds(cost)).collect();
     let ours: Vec<String> =
         costs.iter().map(|(cost, name)| format!("{name} {}", range(cost.fetches))).collect();
     Judgement::by_cases(&cases, ours.join(", "), "Over every place of the box against the levels, unclipped.")
 }
 
-fn figure_3_4(evidence: &Evidence) -> Judgement {
-    let all = |radius, wanted: usize| {
-        let costs = costs_at(evidence, radius);
-        costs.iter().map(|(cost, _)| cost.fetches.0 <= wanted && wanted <= cost.fetches.1).collect::<Vec<_>>()
-    };
-    let cases = [all(1, 6), all(2, 13)].concat();
+fn figure_3_4() -> Judgement {
+    let fetches = SPLITS.map(|(split, name)| (example::pyramid_fetches(split), name));
+    let ours = fetches.map(|([one, two], name)| format!("{name}: {one}; {two}"));
     Judgement::by_cases(
-        &cases,
-        "6 and 13 occur with both splits",
-        "6 is what every 3 x 3 box needs at least: one block of 2 x 2 and five pixels. It contradicts 6.3.2.",
+        &fetches.map(|(fetches, _)| fetches == [6, 13]),
+        ours.join(", "),
+        "At the pixel of Figure 3.3. 6 is the least for any 3 x 3 box, one block of 2 x 2 and five pixels, which \
+         contradicts 6.3.2.",
     )
 }
 

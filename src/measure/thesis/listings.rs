@@ -1,12 +1,14 @@
 //! What the faults of the listings spoil, and where a table in f32 breaks: on any map, without OpenGL.
 
+use std::collections::BTreeSet;
+
 use glam::UVec2;
 
 use crate::error::Result;
 use crate::image::Image;
 use crate::measure::Difference;
 use crate::reference::{self, Inside, Radii, as_printed, enough, pyramid, total_area};
-use crate::settings::{Faults, SatSamples, Search, Split};
+use crate::settings::{Edges, Faults, Order, SatSamples, Search, Split};
 use crate::synth::{self, Kind};
 
 /// One fault, alone, and what it does to a map.
@@ -64,6 +66,34 @@ pub fn fault_rows(density: &Image<u32>, map: &str, search: Search) -> Result<Vec
     ]
     .into_iter()
     .collect()
+}
+
+/// Decisions at the brink that a rounded ratio gets wrong, and how many there are.
+///
+/// For each box up to `max_radius` and each area that an edge or a corner can leave of it inside the map: the fewest
+/// photons that are enough, and one less.
+#[must_use]
+pub fn misjudged_by_float_ratio(max_radius: u32, min_photons: u32) -> (u64, u64) {
+    let search = Search { min_photons, max_radius, edges: Edges::Scale, order: Order::Forward };
+    let (mut wrong, mut all) = (0, 0);
+    for radius in 1..=max_radius {
+        let total = total_area(radius);
+        let sides = || u64::from(radius) + 1..=2 * u64::from(radius) + 1;
+        let areas: BTreeSet<u64> =
+            sides().flat_map(|width| sides().map(move |height| width * height)).collect();
+        for inside in areas {
+            let fewest = (u64::from(min_photons) * inside).div_ceil(total);
+            for photons in [fewest - 1, fewest] {
+                let exact = enough(photons, total, inside, search);
+                // Fewer than n photons fit.
+                let photons = u32::try_from(photons).unwrap_or(u32::MAX);
+                let rounded = as_printed::enough_by_float_ratio(photons, total, inside, min_photons);
+                wrong += u64::from(exact != rounded);
+                all += 1;
+            }
+        }
+    }
+    (wrong, all)
 }
 
 /// A table in f32 against the definition, at one total.
@@ -150,7 +180,6 @@ fn float_table(density: &Image<u32>) -> Image<f32> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::settings::{Edges, Order};
 
     const SEARCH: Search =
         Search { min_photons: 25, max_radius: 32, edges: Edges::Scale, order: Order::Binary };
@@ -182,5 +211,12 @@ mod tests {
         assert!(rows[0].total < 1 << 24 && rows[1].total < 1 << 24 && rows[2].total > 1 << 24);
         assert!(rows[0].difference.is_none() && rows[1].difference.is_none());
         assert!(!rows[2].difference.is_none());
+    }
+
+    #[test]
+    fn a_rounded_ratio_is_wrong_only_where_counts_outgrow_it() {
+        assert_eq!(misjudged_by_float_ratio(32, 1000), (0, 12_242));
+        // f32 does not hold n itself.
+        assert!(misjudged_by_float_ratio(32, (1 << 26) + 1).0 > 0);
     }
 }

@@ -90,6 +90,22 @@ pub fn all() -> Vec<Table> {
     ]
 }
 
+/// What a full run has to time: each quantity in each of its rows, once, though A.3 and A.4 share theirs.
+#[must_use]
+pub fn cells() -> Vec<(Quantity, u32)> {
+    let mut cells = Vec::new();
+    for table in all() {
+        for quantity in table.quantities() {
+            for &(row, _) in &table.rows {
+                if !cells.contains(&(quantity, row)) {
+                    cells.push((quantity, row));
+                }
+            }
+        }
+    }
+    cells
+}
+
 /// The printed milliseconds of `quantity` on `card`, as (row, ms).
 #[must_use]
 pub fn printed_series(quantity: Quantity, card: Card) -> Vec<(u32, f64)> {
@@ -144,6 +160,12 @@ mod tests {
         expect(7, SatSearchByMaxRadius, Card::Gtx480, 256, 0.427);
         expect(8, BruteForce, Card::Gtx480, 1024, 1514.013);
         assert_eq!(tables[1].printed(BruteForce, Card::Gtx480, 64), None);
+    }
+
+    #[test]
+    fn a_full_run_times_each_cell_once() {
+        // A.1 5, A.2 2 x 4, A.3 with A.4 4 x 5, A.5 2 x 5, A.6 2 x 5, A.7 4, A.8 5.
+        assert_eq!(cells().len(), 5 + 8 + 20 + 10 + 10 + 4 + 5);
     }
 
     #[test]
