@@ -63,6 +63,7 @@ fn the_page_holds_every_table_figure_and_claim_and_needs_no_network() {
         environment: &environment,
         evidence: &evidence,
         judged: &judged,
+        other_maps: &[],
         notes: &notes,
     };
     let html = report.html();

@@ -5,6 +5,7 @@ mod compare;
 mod devices;
 pub(crate) mod output;
 mod radius;
+mod reproduce;
 mod synth;
 
 use std::io::{self, IsTerminal as _};
@@ -41,6 +42,7 @@ enum Verb {
     Radius(radius::Args),
     Compare(compare::Args),
     Synth(synth::Args),
+    Reproduce(reproduce::Args),
     Devices(devices::Args),
     Bench(Box<bench::Args>),
 }
@@ -57,6 +59,7 @@ pub(crate) fn run(cli: Cli) -> Result<Outcome> {
         Verb::Radius(args) => radius::run(&args),
         Verb::Compare(args) => compare::run(&args),
         Verb::Synth(args) => synth::run(&args),
+        Verb::Reproduce(args) => reproduce::run(&args),
         Verb::Devices(args) => devices::run(&args),
         Verb::Bench(args) => bench::run(&args),
     }

@@ -31,6 +31,14 @@ pub(crate) fn print_facts(facts: &[(&str, String)]) -> Result<()> {
     print(&table.trim_fmt())
 }
 
+/// Rows of columns for people, the last column broken where it does not fit.
+pub(crate) fn print_rows<const COLUMNS: usize>(rows: &[[String; COLUMNS]]) -> Result<()> {
+    let mut table = Table::new();
+    table.load_style(NOTHING).set_content_arrangement(ContentArrangement::Dynamic).set_width(WIDTH);
+    table.add_rows(rows);
+    print(&table.trim_fmt())
+}
+
 /// The error and what caused it, as one message.
 #[expect(clippy::print_stderr, reason = "the one place for the program's last words")]
 pub(crate) fn print_error(error: &anyhow::Error) {

@@ -1,12 +1,12 @@
 //! `varikernel radius`: density map in, radius map out.
 
+mod report;
+
 use std::path::{Path, PathBuf};
 
 use anyhow::{Result, anyhow, bail};
-use serde::Serialize;
 use varikernel::context::{self, DeviceChoice};
-use varikernel::exactness::Plan;
-use varikernel::gl::{self, DeviceInfo, Sample};
+use varikernel::gl::{self, DeviceInfo};
 use varikernel::image::{
     Attribute, Format, Picture, ReadOptions, check_writable, read_counts, write_counts, write_picture,
 };
@@ -17,6 +17,7 @@ use varikernel::settings::{
 use varikernel::{CountBounds, DensityMap, Error, Image, RadiusPipeline, reference};
 
 use super::{Outcome, output};
+use report::{MapReport, Report, Timing};
 
 /// Find, for each pixel, the smallest box that holds at least n photons.
 #[derive(Debug, clap::Args)]
@@ -70,6 +71,10 @@ pub(crate) struct Args {
     #[arg(long, value_enum, default_value_t = Fidelity::Corrected)]
     fidelity: Fidelity,
 
+    /// Run with these printed faults only.
+    #[arg(long, value_enum, value_delimiter = ',', conflicts_with = "fidelity")]
+    fault: Vec<Fault>,
+
     /// Compute even where sums may round or wrap, to see how wrong it gets.
     #[arg(long)]
     allow_inexact: bool,
@@ -95,50 +100,32 @@ pub(crate) struct Args {
     json: bool,
 }
 
+/// One of the printed faults; what they do is in the library's documentation of `structure`.
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+enum Fault {
+    /// Listing 4.2: coordinates clamped to 0..63 whatever the size.
+    #[value(name = "clamp-to-63")]
+    ClampTo63,
+    /// Listing 4.2: `> 0` where `>= 0` is meant.
+    BorderTest,
+    /// Listing 4.2: the lower left added back too often.
+    CornerTest,
+    /// Listing 4.2: horizontal and vertical passes swapped.
+    SwappedAxes,
+    /// Listing 4.2: the extension to more than 2 samples.
+    SampleStride,
+    /// Listing 4.3: strips that are not counted.
+    ForgottenStrip,
+    /// Section 4.4: a rounded ratio.
+    FloatRatio,
+}
+
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]
 enum Fidelity {
     /// Without the faults.
     Corrected,
     /// With the faults, made well defined.
     AsPrinted,
-}
-
-#[derive(Serialize)]
-struct Report<'a> {
-    version: &'static str,
-    map: MapReport<'a>,
-    output: &'a Path,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    limited_mask: Option<&'a Path>,
-    settings: Settings,
-    device: &'a DeviceInfo,
-    plan: Plan,
-    radius: RadiusSummary,
-    stages: Vec<Timing>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    verify: Option<Difference>,
-}
-
-#[derive(Serialize)]
-struct MapReport<'a> {
-    file: &'a Path,
-    size: [u32; 2],
-    photons: u64,
-    max_count: u32,
-}
-
-#[derive(Serialize)]
-struct Timing {
-    stage: &'static str,
-    query_ms: f64,
-    wall_ms: f64,
-}
-
-impl Timing {
-    fn new(stage: &'static str, sample: Sample) -> Self {
-        let milliseconds = |time: std::time::Duration| 1e3 * time.as_secs_f64();
-        Self { stage, query_ms: milliseconds(sample.query), wall_ms: milliseconds(sample.wall) }
-    }
 }
 
 pub(crate) fn run(args: &Args) -> Result<Outcome> {
@@ -167,10 +154,14 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
 
     let verify = if args.verify {
         let definition = reference::radius_by_table(&counts, settings.search);
-        Some(Difference::between(&radii.radius, &definition.radius)?)
+        Some((
+            Difference::between(&radii.radius, &definition.radius)?,
+            Difference::between(&radii.limited, &definition.limited)?,
+        ))
     } else {
         None
     };
+    let (verify, verify_limited) = verify.unzip();
     write_radius(args, &settings, gl.info(), &radii.radius)?;
     if let Some(path) = &args.limited_mask {
         let mask = radii.limited.map(u32::from);
@@ -195,13 +186,15 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
         radius: RadiusSummary::of(&radii),
         stages: vec![Timing::new("build", build), Timing::new("search", search)],
         verify,
+        verify_limited,
     };
     if args.json {
         output::print_json(&report)?;
     } else {
-        print_report(&report)?;
+        report::print(&report)?;
     }
-    let differs = report.verify.is_some_and(|difference| !difference.is_none());
+    let mut differences = [&report.verify, &report.verify_limited].into_iter().flatten();
+    let differs = differences.any(|difference| !difference.is_none());
     Ok(if differs { Outcome::Differs } else { Outcome::Done })
 }
 
@@ -275,13 +268,29 @@ fn settings(args: &Args) -> Settings {
         matching: args.matching,
         sat_samples: args.sat_samples,
         storage: args.storage,
-        faults: match args.fidelity {
-            Fidelity::Corrected => Faults::NONE,
-            Fidelity::AsPrinted => Faults::AS_PRINTED,
-        },
+        faults: faults(args),
         exactness: if args.allow_inexact { Exactness::Waived } else { Exactness::Required },
         limited_mask: true,
     }
+}
+
+fn faults(args: &Args) -> Faults {
+    let mut faults = match args.fidelity {
+        Fidelity::Corrected => Faults::NONE,
+        Fidelity::AsPrinted => Faults::AS_PRINTED,
+    };
+    for fault in &args.fault {
+        *match fault {
+            Fault::ClampTo63 => &mut faults.clamp_to_63,
+            Fault::BorderTest => &mut faults.border_test,
+            Fault::CornerTest => &mut faults.corner_test,
+            Fault::SwappedAxes => &mut faults.swapped_axes,
+            Fault::SampleStride => &mut faults.sample_stride,
+            Fault::ForgottenStrip => &mut faults.forgotten_strip,
+            Fault::FloatRatio => &mut faults.float_ratio,
+        } = true;
+    }
+    faults
 }
 
 fn write_radius(args: &Args, settings: &Settings, device: &DeviceInfo, radius: &Image<u32>) -> Result<()> {
@@ -323,42 +332,5 @@ fn flatten(prefix: &str, value: &serde_json::Value) -> Vec<Attribute> {
             None => vec![Attribute::text(prefix, number.to_string())],
         },
         other => vec![Attribute::text(prefix, other.to_string())],
-    }
-}
-
-fn print_report(report: &Report<'_>) -> Result<()> {
-    let RadiusSummary { min, mean, median, max, limited_share } = report.radius;
-    let [width, height] = report.map.size;
-    let mut facts = vec![
-        ("map", format!("{}, {width} x {height} pixels", report.map.file.display())),
-        ("photons", format!("{}, at most {} in a pixel", report.map.photons, report.map.max_count)),
-        ("renderer", report.device.renderer.clone()),
-        ("radius", format!("{min} to {max} pixels, mean {mean:.3}, median {median}")),
-        ("limited", format!("{:.3} % found too few photons", 100.0 * limited_share)),
-        ("exact", exactness(report).to_owned()),
-    ];
-    for Timing { stage, query_ms, wall_ms } in &report.stages {
-        facts
-            .push((stage, format!("{query_ms:.3} ms by GPU query, {wall_ms:.3} ms by the clock, first run")));
-    }
-    if let Some(difference) = &report.verify {
-        facts.push(("verify", format!("against the definition: {difference}")));
-    }
-    facts.push(("written", report.output.display().to_string()));
-    if let Some(mask) = report.limited_mask {
-        facts.push(("", mask.display().to_string()));
-    }
-    output::print_facts(&facts)
-}
-
-fn exactness(report: &Report<'_>) -> &'static str {
-    if report.plan.exact {
-        "yes"
-    } else if !report.settings.method.is_exact() {
-        "no, the method approximates"
-    } else if report.settings.faults != Faults::NONE {
-        "no, the listings run with their printed faults"
-    } else {
-        "not proved, sums may round or wrap"
     }
 }

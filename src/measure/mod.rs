@@ -5,6 +5,8 @@ pub mod bench;
 mod difference;
 #[cfg(feature = "report")]
 pub mod report;
+#[cfg(feature = "report")]
+pub mod reproduce;
 mod statistics;
 mod summary;
 #[cfg(feature = "report")]

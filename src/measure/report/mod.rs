@@ -10,6 +10,7 @@ use askama::Template as _;
 pub use plot::{figure_svg, orders_svg};
 pub use view::table_csv;
 
+use crate::measure::reproduce::OtherMap;
 use crate::measure::thesis::claims::{self, Evidence, Judged};
 use crate::measure::thesis::{figures, tables};
 
@@ -24,6 +25,8 @@ pub struct Report<'a> {
     pub evidence: &'a Evidence,
     /// The claims with their answers.
     pub judged: &'a [Judged],
+    /// The summed-area table's times on maps of other densities.
+    pub other_maps: &'a [OtherMap],
     /// What a reader has to know of this run: cells left out, samples marked.
     pub notes: &'a [String],
 }

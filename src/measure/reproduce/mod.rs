@@ -18,7 +18,7 @@ use crate::gl::Gl;
 use crate::image::{Image, write_atomically};
 use crate::maps::DensityMap;
 use crate::measure::bench::{self, Protocol};
-use crate::measure::thesis::claims::{Evidence, Gain, Judged, LargerSmaller, OrderPoint};
+use crate::measure::thesis::claims::{Evidence, Gain, Group, Judged, LargerSmaller, OrderPoint};
 use crate::measure::thesis::{claims, quantity::Measurements};
 use crate::pipeline::RadiusPipeline;
 use crate::reference;
@@ -70,8 +70,8 @@ impl RunFile {
     /// [`Error::File`] if there is none, or it is something else.
     pub fn load(path: &Path) -> Result<Self> {
         let remedy = "give the folder of an earlier run, or leave out --resume";
-        let text =
-            std::fs::read(path).map_err(|error| Error::file(path, format!("can't be read: {error}"), remedy))?;
+        let text = std::fs::read(path)
+            .map_err(|error| Error::file(path, format!("can't be read: {error}"), remedy))?;
         serde_json::from_slice(&text)
             .map_err(|error| Error::file(path, format!("is not the file of a run: {error}"), remedy))
     }
@@ -180,12 +180,7 @@ pub fn counted(gl: &Gl, (real_map, real_name): (&Image<u32>, &str)) -> Result<Ev
 /// Adds what was timed to what was counted.
 #[must_use]
 pub fn with_timings(counted: Evidence, run: &RunFile) -> Evidence {
-    Evidence {
-        measurements: measurements(run),
-        orders: orders(run),
-        gains: run.gains.clone(),
-        ..counted
-    }
+    Evidence { measurements: measurements(run), orders: orders(run), gains: run.gains.clone(), ..counted }
 }
 
 /// The cells of the tables.
@@ -208,13 +203,16 @@ pub fn other_maps(run: &RunFile) -> Vec<OtherMap> {
 
 /// All claims with their answers and the time that their evidence took.
 #[must_use]
-pub fn judge(evidence: &Evidence, run: &RunFile) -> Vec<Judged> {
+pub fn judge(evidence: &Evidence, run: &RunFile, counted_seconds: f64) -> Vec<Judged> {
     let mut judged = claims::judge_all(evidence);
     for one in &mut judged {
         let parts = parts::of_claim(&one.claim.id);
-        let seconds: f64 =
-            parts.iter().filter_map(|name| run.part(name)).map(|part| part.seconds).sum();
-        one.seconds = (seconds > 0.0).then_some(seconds);
+        let seconds: f64 = parts.iter().filter_map(|name| run.part(name)).map(|part| part.seconds).sum();
+        one.seconds = match one.claim.group {
+            // All of them come from one count.
+            Group::Counted | Group::Listing => Some(counted_seconds),
+            _ => (seconds > 0.0).then_some(seconds),
+        };
     }
     judged
 }

@@ -157,15 +157,8 @@ fn place(quantity: Quantity) -> (&'static str, Stage, Option<Order>, Option<SatS
 
 /// Every cell of the tables.
 pub(super) fn measurements(run: &RunFile) -> Measurements {
-    let mut cells = Vec::new();
-    for table in tables::all() {
-        for quantity in table.quantities() {
-            for &(row, _) in &table.rows {
-                cells.push(Measured { quantity, row, timing: timing(run, quantity, row) });
-            }
-        }
-    }
-    Measurements(cells)
+    let cell = |(quantity, row)| Measured { quantity, row, timing: timing(run, quantity, row) };
+    Measurements(tables::cells().into_iter().map(cell).collect())
 }
 
 fn timing(run: &RunFile, quantity: Quantity, row: u32) -> Timing {
@@ -195,7 +188,8 @@ fn timing(run: &RunFile, quantity: Quantity, row: u32) -> Timing {
 pub(super) fn orders(run: &RunFile) -> Vec<OrderPoint> {
     let Some(part) = run.part(ORDERS) else { return Vec::new() };
     let median = |map: &MapInfo, order| {
-        let run = find(&part.report, Stage::Search, |case| case.map == map.name && case.search == Some(order))?;
+        let run =
+            find(&part.report, Stage::Search, |case| case.map == map.name && case.search == Some(order))?;
         (!run.is_wrong()).then_some(run.statistics.median_ms)
     };
     let point = |map: &MapInfo| {
@@ -221,9 +215,10 @@ pub(super) fn other_maps(run: &RunFile) -> Vec<OtherMap> {
     let Some(part) = run.part(OTHER_MAPS) else { return Vec::new() };
     let of_map = |map: &MapInfo| {
         let wanted = [Stage::Build, Stage::Search, Stage::Frame];
-        let runs = part.report.runs.iter().filter(|run| {
-            run.case.map == map.name && wanted.contains(&run.case.stage) && !run.is_wrong()
-        });
+        let runs =
+            part.report.runs.iter().filter(|run| {
+                run.case.map == map.name && wanted.contains(&run.case.stage) && !run.is_wrong()
+            });
         let times = runs.map(|run| {
             let order = match run.case.search {
                 Some(Order::Forward) => " forward",

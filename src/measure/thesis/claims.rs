@@ -135,7 +135,7 @@ pub struct OrderPoint {
 }
 
 /// One cost with and without a change, on one map.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Gain {
     /// The claim that it answers: `scale-cost` or one of [`Group::Future`].
     pub id: String,
