@@ -11,7 +11,7 @@ use crate::measure::thesis::claims::{Gain, usual_search};
 use crate::measure::{Difference, Statistics};
 use crate::pipeline::RadiusPipeline;
 use crate::reference;
-use crate::settings::{Edges, Matching, Method, Order, SatSamples, Search, Settings};
+use crate::settings::{Edges, Matching, Method, Order, SatSamples, Search, Settings, Variation};
 
 /// Most samples of each side of a gain.
 const SAMPLES: usize = 60;
@@ -31,6 +31,7 @@ fn changes() -> Vec<Change> {
     let binary = Settings { search: Search { order: Order::Binary, ..thesis.search }, ..thesis };
     let brute_force = Settings { method: Method::BruteForce, ..thesis };
     let pyramid = Settings { method: Method::Pyramid, ..thesis };
+    let varied = |before: Settings, variation| Settings { variation: Some(variation), ..before };
     let frame = |id, what, before, after| Change { id, what, before, after, build_only: false };
     let build = |id, what, before, after| Change { id, what, before, after, build_only: true };
     vec![
@@ -41,16 +42,41 @@ fn changes() -> Vec<Change> {
             thesis,
         ),
         frame(
+            "future-brute-reuse",
+            "brute force, forward",
+            brute_force,
+            varied(brute_force, Variation::ReusedSums),
+        ),
+        frame(
+            "future-brute-several",
+            "brute force, forward, four fetches a turn",
+            brute_force,
+            varied(brute_force, Variation::FetchesAtOnce),
+        ),
+        frame(
             "future-pyramid-bits",
             "pyramid, forward",
             pyramid,
             Settings { matching: Matching::Bits, ..pyramid },
         ),
+        frame("future-pyramid-strips", "pyramid, forward", pyramid, varied(pyramid, Variation::WholeStrips)),
         build(
             "future-sat-samples",
             "table, 8 samples a pass against 4, build alone",
             thesis,
             Settings { sat_samples: SatSamples::Eight, ..thesis },
+        ),
+        build(
+            "future-sat-scissor",
+            "table, 2 samples a pass, build alone",
+            Settings { sat_samples: SatSamples::Two, ..thesis },
+            varied(Settings { sat_samples: SatSamples::Two, ..thesis }, Variation::UnfinishedTexels),
+        ),
+        frame(
+            "future-sat-select",
+            "table, binary, whole frame",
+            binary,
+            varied(binary, Variation::UnconditionalFetches),
         ),
     ]
 }

@@ -113,11 +113,11 @@ pub(super) fn all(real_map: &Image<u32>, real_name: &str) -> Vec<Part> {
             ..part(ORDERS, 8.0, ORDER_DENSITIES.map(order_map).into(), &table)
         },
         part(OTHER_MAPS, 8.0, others.into(), &table),
+        part(PYRAMID, 28.0, sizes(&|side| side <= PYRAMID_SIDE), &[Method::Pyramid]),
         Part {
             searches: vec![Order::Forward],
-            ..part(BRUTE_FORCE, 16.0, sizes(&|_| true), &[Method::BruteForce])
+            ..part(BRUTE_FORCE, 20.0, sizes(&|_| true), &[Method::BruteForce])
         },
-        part(PYRAMID, 28.0, sizes(&|side| side <= PYRAMID_SIDE), &[Method::Pyramid]),
     ]
 }
 
