@@ -11,7 +11,7 @@ use crate::support::{
 };
 
 /// A map, n and MR.
-fn cases() -> Vec<(&'static str, Image<u32>, u32, u32)> {
+pub(crate) fn cases() -> Vec<(&'static str, Image<u32>, u32, u32)> {
     vec![
         ("1x1", random_map(1, 1, 5), 25, 32),
         ("1x6", random_map(1, 6, 5), 4, 8),
@@ -27,7 +27,7 @@ fn cases() -> Vec<(&'static str, Image<u32>, u32, u32)> {
     ]
 }
 
-fn agree(gl: &Gl, name: &str, density: &Image<u32>, settings: Settings) {
+pub(crate) fn agree(gl: &Gl, name: &str, density: &Image<u32>, settings: Settings) {
     let expected = reference::radius(density, settings.search);
     let found = on_gpu(gl, density, settings);
     let context = format!("{name}, {settings:?}");
@@ -68,7 +68,7 @@ fn one_hot_pixel_of_a_thousand_million_is_exact_in_u32() {
 }
 
 /// Only the box of MR itself holds enough, in nine pixels: those take every turn that there is.
-fn longest_search(gl: &Gl, settings: Settings) {
+pub(crate) fn longest_search(gl: &Gl, settings: Settings) {
     let side = 2 * settings.search.max_radius + 1;
     let settings = Settings { search: Search { min_photons: side * side, ..settings.search }, ..settings };
     let density = Image::filled(glam::UVec2::splat(side + 2), 1);
