@@ -1,6 +1,6 @@
 // The smallest radius whose box holds enough photons (thesis 1.3, 3.5).
 // Follows a counter that defines: uint count_in_box(ivec2 lo, ivec2 hi), both corners included and inside the map
-// (BOX_UNCLIPPED: as they come, for the listing that clips by itself).
+// (BOX_UNCLIPPED: as they come, for a counter that clips by itself).
 uniform ivec2 map_size;
 uniform int max_radius;
 #ifdef ORDER_FORWARD

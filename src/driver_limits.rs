@@ -15,7 +15,7 @@ use std::ops::RangeInclusive;
 
 use crate::error::{Error, Result};
 use crate::gl::DeviceInfo;
-use crate::settings::{Matching, Method, Order, Settings};
+use crate::settings::{Matching, Method, Order, Settings, Variation};
 use crate::structure;
 
 const LLVMPIPE_TURNS: u64 = 65_535;
@@ -62,12 +62,15 @@ fn forward_ranges(settings: &Settings) -> (Vec<RangeInclusive<u32>>, u64) {
     let (mut ranges, mut most_turns) = (Vec::new(), 0);
     let (mut first, mut turns) = (1, 0);
     for radius in 1..=settings.search.max_radius {
-        let of_box = turns_of_box(settings, radius);
-        if turns + of_box > LLVMPIPE_TURNS && radius > first {
-            ranges.push(first..=radius - 1);
-            (first, turns) = (radius, 0);
+        let of_next_box = turns_of_next_box(settings, radius);
+        if radius > first && turns + of_next_box <= LLVMPIPE_TURNS {
+            turns += of_next_box;
+        } else {
+            if radius > first {
+                ranges.push(first..=radius - 1);
+            }
+            (first, turns) = (radius, turns_of_box(settings, radius));
         }
-        turns += of_box;
         most_turns = most_turns.max(turns);
     }
     ranges.push(first..=settings.search.max_radius);
@@ -100,18 +103,40 @@ fn binary_turns(settings: &Settings) -> u64 {
     turns
 }
 
-/// Turns for one radius: the search's own and those of the counter.
+/// Turns for one radius that a pass begins with: the search's own and those of the counter. The turn in which a loop
+/// ends counts as well.
 fn turns_of_box(settings: &Settings, radius: u32) -> u64 {
     let side = 2 * u64::from(radius) + 1;
-    1 + match settings.method {
-        Method::BruteForce => side + side * side,
-        Method::Pyramid | Method::AveragedMipmap => {
-            let matching = match settings.matching {
-                Matching::Modulo => u64::from(structure::largest_level(settings.search.max_radius)),
-                Matching::Bits => 0,
-            };
-            structure::most_blocks(radius) * (1 + matching)
+    let matching = match settings.matching {
+        Matching::Modulo => u64::from(structure::largest_level(settings.search.max_radius)) + 1,
+        Matching::Bits => 0,
+    };
+    2 + match settings.method {
+        Method::BruteForce => match settings.variation {
+            // All rings up to this one, summed.
+            Some(Variation::ReusedSums) => 1 + u64::from(radius) * u64::from(radius + 3),
+            Some(Variation::FetchesAtOnce) => 1 + side * (2 + side.div_ceil(4)),
+            _ => (side + 1) * (side + 1),
+        },
+        // Four strips, and blocks of at least 2 x 2 in the even rest of at most 2 r by 2 r.
+        Method::Pyramid if settings.variation == Some(Variation::WholeStrips) => {
+            4 * (1 + side) + 1 + u64::from(radius).pow(2) * (1 + matching)
         }
+        Method::Pyramid | Method::AveragedMipmap => 1 + structure::most_blocks(radius) * (1 + matching),
         Method::NaiveMipmap | Method::SummedAreaTable => 0,
     }
+}
+
+/// Turns for a radius that follows the one before it in the same pass.
+fn turns_of_next_box(settings: &Settings, radius: u32) -> u64 {
+    if settings.variation == Some(Variation::ReusedSums) {
+        2 + turns_of_ring(radius)
+    } else {
+        turns_of_box(settings, radius)
+    }
+}
+
+/// Turns to add one ring to a sum: its own, 2 r along its sides, and the one that ends these.
+fn turns_of_ring(radius: u32) -> u64 {
+    2 + 2 * u64::from(radius)
 }

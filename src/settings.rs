@@ -223,6 +223,46 @@ impl Faults {
     }
 }
 
+/// Variations of a method that the thesis leaves to future work in chapter 6, to be timed: each gives the same radii.
+///
+/// Bit operations in place of modulo, which 6.3.5 asks for as well, are [`Matching::Bits`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+pub enum Variation {
+    /// Brute force, forward: the sum of the radius before is kept, and only the new ring is read (6.2.5).
+    ReusedSums,
+    /// Brute force: four fetches in each turn of the loop (6.2.5).
+    FetchesAtOnce,
+    /// Pyramid: strips of width or height 1 are summed whole, without matching and stack (6.3.5).
+    WholeStrips,
+    /// Summed-area table: all four entries are fetched first, then those that count are chosen (6.4.5).
+    UnconditionalFetches,
+    /// Summed-area table: a doubling pass leaves out texels that are finished (6.4.5).
+    UnfinishedTexels,
+}
+
+impl Variation {
+    /// All of them, in the thesis's order.
+    pub const ALL: [Self; 5] = [
+        Self::ReusedSums,
+        Self::FetchesAtOnce,
+        Self::WholeStrips,
+        Self::UnconditionalFetches,
+        Self::UnfinishedTexels,
+    ];
+
+    /// The method that it varies.
+    #[must_use]
+    pub fn method(self) -> Method {
+        match self {
+            Self::ReusedSums | Self::FetchesAtOnce => Method::BruteForce,
+            Self::WholeStrips => Method::Pyramid,
+            Self::UnconditionalFetches | Self::UnfinishedTexels => Method::SummedAreaTable,
+        }
+    }
+}
+
 /// What happens where the sums could round or wrap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
@@ -249,6 +289,9 @@ pub struct Settings {
     pub sat_samples: SatSamples,
     /// The number in which sums are kept; the averaged mipmap is always f32.
     pub storage: Storage,
+    /// A variation of the method, without misprints, or none.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub variation: Option<Variation>,
     /// Which of the thesis's misprints to run with.
     pub faults: Faults,
     /// Whether an inexact result is an error.
@@ -267,6 +310,7 @@ impl Default for Settings {
             matching: Matching::Bits,
             sat_samples: SatSamples::Four,
             storage: Storage::U32,
+            variation: None,
             faults: Faults::NONE,
             exactness: Exactness::Required,
             limited_mask: false,
@@ -300,7 +344,7 @@ impl Settings {
         }
     }
 
-    /// Checks every range.
+    /// Checks every range, and that the variation fits.
     ///
     /// # Errors
     /// [`Error::Setting`] with the field's name.
@@ -331,6 +375,20 @@ impl Settings {
                     "the naive mipmap goes up to {NAIVE_MAX_RADIUS}: the area of its last block must fit 32 bits"
                 ),
             });
+        }
+        if let Some(variation) = self.variation {
+            let refuse = |reason: String| {
+                Err(Error::Setting { name: "variation", value: format!("{variation:?}"), reason })
+            };
+            if self.method != variation.method() {
+                return refuse(format!("it varies {:?}, not {:?}", variation.method(), self.method));
+            }
+            if variation == Variation::ReusedSums && self.search.order != Order::Forward {
+                return refuse("only a forward search grows the box that it has summed".to_owned());
+            }
+            if self.faults != Faults::NONE {
+                return refuse("it varies the method without the thesis's faults".to_owned());
+            }
         }
         Ok(())
     }

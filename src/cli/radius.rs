@@ -13,6 +13,7 @@ use varikernel::image::{
 use varikernel::measure::{Difference, RadiusSummary, total_photons};
 use varikernel::settings::{
     Edges, Exactness, Faults, Matching, Method, Order, SatSamples, Search, Settings, Split, Storage,
+    Variation,
 };
 use varikernel::{CountBounds, DensityMap, Error, Image, RadiusPipeline, reference};
 
@@ -66,6 +67,10 @@ pub(crate) struct Args {
     /// How the pyramid finds the level of a sample (thesis 4.3, 6.3.5).
     #[arg(long, value_enum, default_value_t = Matching::Bits)]
     matching: Matching,
+
+    /// A variation of the method that the thesis leaves to future work (6.2.5, 6.3.5, 6.4.5); the radii stay the same.
+    #[arg(long, value_enum)]
+    variation: Option<Variation>,
 
     /// Run the thesis's listings with their printed faults, or without.
     #[arg(long, value_enum, default_value_t = Fidelity::Corrected)]
@@ -269,6 +274,7 @@ fn settings(args: &Args) -> Settings {
         sat_samples: args.sat_samples,
         storage: args.storage,
         faults: faults(args),
+        variation: args.variation,
         exactness: if args.allow_inexact { Exactness::Waived } else { Exactness::Required },
         limited_mask: true,
     }

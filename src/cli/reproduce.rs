@@ -102,9 +102,10 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     } else {
         print_claims(judged.iter().filter(|one| !shown.contains(&one.claim.group)))?;
     }
-    let command = std::env::args().collect::<Vec<_>>().join(" ");
+    let command =
+        std::iter::once("varikernel".to_owned()).chain(std::env::args().skip(1)).collect::<Vec<_>>();
     let report = Report {
-        command: command.strip_prefix(program_folder().as_str()).unwrap_or(&command),
+        command: &command.join(" "),
         environment: &environment(&gl, &run),
         evidence: &evidence,
         judged: &judged,
@@ -118,13 +119,6 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
         print_summary(&judged, &args.output)?;
     }
     Ok(Outcome::Done)
-}
-
-/// The folder in front of the program's name, so that a report does not tell where it was built.
-fn program_folder() -> String {
-    let program = std::env::args().next().unwrap_or_default();
-    let name = Path::new(&program).file_name().map_or(0, |name| name.len());
-    program[..program.len() - name].to_owned()
 }
 
 /// The map is read like any other file.

@@ -144,7 +144,17 @@ impl<'a> Pass<'a> {
     /// # Errors
     /// [`Error::UnknownUniform`] if the program lacks a name.
     pub(crate) fn fill(self, target: &mut Target) -> Result<()> {
-        self.draw(target, 0)
+        self.draw(target, 0, UVec2::ZERO)
+    }
+
+    /// Draws over `target` from the column and row of `origin` on; what lies before either stays as it is.
+    ///
+    /// gl_FragCoord is the texel's place in the whole target all the same.
+    ///
+    /// # Errors
+    /// [`Error::UnknownUniform`] if the program lacks a name.
+    pub(crate) fn fill_from(self, origin: UVec2, target: &mut Target) -> Result<()> {
+        self.draw(target, 0, origin)
     }
 
     /// Draws over `level` of `target`, reading the level before it as the sampler `name`.
@@ -164,12 +174,15 @@ impl<'a> Pass<'a> {
             uniforms: self.uniforms.clone(),
             ..self
         };
-        let drawn = pass.draw(target, level);
+        let drawn = pass.draw(target, level, UVec2::ZERO);
         target.texture().select_levels(0, target.texture().levels() - 1);
         drawn
     }
 
-    fn draw(&self, target: &Target, level: u32) -> Result<()> {
+    fn draw(&self, target: &Target, level: u32, origin: UVec2) -> Result<()> {
+        let size = target.texture().level_size(level);
+        assert!(origin.cmplt(size).all(), "a pass draws something: from {origin} of {size}");
+        let (corner, size) = (origin.as_ivec2(), (size - origin).as_ivec2());
         let gl = self.program.gl();
         gl.labelled(self.label, || {
             self.program.use_program();
@@ -182,12 +195,11 @@ impl<'a> Pass<'a> {
             for &(name, value) in &self.uniforms {
                 self.program.set(name, value)?;
             }
-            let size = target.texture().level_size(level).as_ivec2();
             // SAFETY: the context is current, the framebuffer is complete, and the vertex stage reads no buffer.
             unsafe {
                 let glow = gl.glow();
                 glow.bind_framebuffer(glow::DRAW_FRAMEBUFFER, Some(target.framebuffers[level as usize]));
-                glow.viewport(0, 0, size.x, size.y);
+                glow.viewport(corner.x, corner.y, size.x, size.y);
                 glow.bind_vertex_array(Some(gl.vertex_array()));
                 glow.draw_arrays(glow::TRIANGLES, 0, 3);
             }

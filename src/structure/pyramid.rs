@@ -13,11 +13,13 @@
 //! - Against the thesis: the odd rule of the first listing does not say what happens to an even corner, which splits
 //!   as an odd x does; areas that the printed guards forget are kept ([`Faults::forgotten_strip`]); the stack grows
 //!   with MR instead of staying 5.
+//! - Variation (6.3.5): [`Variation::WholeStrips`] first takes off the box's odd columns and rows, at most four, each
+//!   in one loop; what is left is cut into at most r² blocks of 2 x 2 or larger, and never yields a strip.
 //!
 //! [`Faults::forgotten_strip`]: crate::settings::Faults
 
 use crate::gl::{ShaderSource, glsl};
-use crate::settings::{Matching, Method, Settings, Split};
+use crate::settings::{Matching, Method, Settings, Split, Variation};
 
 /// Areas that the stack of a fragment holds: enough for every box of radius `max_radius` or less.
 ///
@@ -56,6 +58,7 @@ pub(super) fn counter(source: ShaderSource, settings: &Settings) -> ShaderSource
         .define_if(settings.split == Split::Larger, "SPLIT_LARGER")
         .define_if(settings.matching == Matching::Bits, "MATCHING_BITS")
         .define_if(settings.method == Method::AveragedMipmap, "AVERAGED")
+        .define_if(settings.variation == Some(Variation::WholeStrips), "WHOLE_STRIPS")
         .define_if(settings.faults.forgotten_strip, "FAULT_FORGOTTEN_STRIP");
     super::number(source, settings).file(glsl!("count/pyramid.glsl"))
 }

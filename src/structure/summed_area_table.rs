@@ -10,6 +10,9 @@
 //! - Exact: u32 while each box holds less than 2^32, even where the table wraps; f32 while the total is at most 2^24.
 //! - Against the thesis: u32 is the default, which its drivers did not support; sizes need not be square or
 //!   powers of s; reads outside the table, which GLSL leaves undefined, are tested for.
+//! - Variations (6.4.5): [`Variation::UnconditionalFetches`] takes 4 fetches everywhere;
+//!   [`Variation::UnfinishedTexels`] leaves s^(k-1) columns or rows out of pass k: all passes along a side of w
+//!   together, less than w / (s - 1).
 //!
 //! The listings' faults are described in `mod.rs`, since all methods have some.
 
@@ -19,7 +22,7 @@ use crate::error::Result;
 use crate::exactness::Plan;
 use crate::gl::{Gl, Pass, Program, ShaderSource, Target, Texture, TextureFormat, glsl};
 use crate::maps::DensityMap;
-use crate::settings::{SatSamples, Settings};
+use crate::settings::{SatSamples, Settings, Variation};
 
 const SEED: &str = "sat seed";
 const DOUBLING: &str = "sat doubling";
@@ -65,11 +68,25 @@ impl SummedAreaTable {
                 if self.settings.reaching_faults().sample_stride {
                     pass = pass.set("printed_offset", 1_i32 << index);
                 }
-                pass.fill(&mut self.spare)?;
+                pass.fill_from(self.origin(axis, index, stride), &mut self.spare)?;
                 std::mem::swap(&mut self.table, &mut self.spare);
             }
         }
         Ok(())
+    }
+
+    /// Where a pass starts to draw: at the first texel that is not finished in both textures.
+    ///
+    /// Along the axis, the entries before s^k are finished when pass k begins, in the texture that it reads. The one
+    /// that it draws into is older by a pass: there, those before s^(k-1) are. So the pass copies the entries in
+    /// between (all their other samples lie before the table), and both textures are right up to s^k. The first pass
+    /// finds nothing of use in the texture that it draws into, the other axis's unfinished entries or an old frame.
+    fn origin(&self, axis: IVec2, index: u32, stride: i32) -> UVec2 {
+        if self.settings.variation == Some(Variation::UnfinishedTexels) && index > 0 {
+            axis.as_uvec2() * (stride.cast_unsigned() / self.settings.sat_samples.count())
+        } else {
+            UVec2::ZERO
+        }
     }
 
     pub(super) fn read_by<'a>(&'a self, pass: Pass<'a>) -> Pass<'a> {
@@ -111,6 +128,8 @@ pub(super) fn counter(source: ShaderSource, settings: &Settings) -> ShaderSource
         .define_if(faults.corner_test, "FAULT_CORNER_TEST");
     super::number(source, settings).file(if faults.in_table_sampling() {
         glsl!("count/summed_area_table_as_printed.glsl")
+    } else if settings.variation == Some(Variation::UnconditionalFetches) {
+        glsl!("count/summed_area_table_unconditional_fetches.glsl")
     } else {
         glsl!("count/summed_area_table.glsl")
     })

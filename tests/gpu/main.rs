@@ -10,3 +10,4 @@ mod radius;
 mod shaders;
 mod state;
 mod support;
+mod variations;

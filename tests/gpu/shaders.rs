@@ -10,7 +10,7 @@ use std::process::Command;
 use varikernel::gl::{ShaderSource, TextureFormat};
 use varikernel::pipeline::shader_sources;
 use varikernel::settings::{
-    Edges, Faults, Matching, Method, Order, SatSamples, Search, Settings, Split, Storage,
+    Edges, Faults, Matching, Method, Order, SatSamples, Search, Settings, Split, Storage, Variation,
 };
 use varikernel::{CountBounds, DensityMap, Gl, RadiusPipeline, context, reference};
 
@@ -46,6 +46,11 @@ fn all_settings() -> Vec<Settings> {
                         all.push(Settings { split: Split::Odd, matching: Matching::Modulo, ..base });
                         all.push(Settings { split: Split::Odd, faults: Faults::AS_PRINTED, ..base });
                         all.push(Settings { sat_samples: SatSamples::Sixteen, ..base });
+                        for variation in Variation::ALL {
+                            let varied = Settings { variation: Some(variation), ..base };
+                            let modulo = Settings { split: Split::Odd, matching: Matching::Modulo, ..varied };
+                            all.extend([varied, modulo].into_iter().filter(|s| s.validate().is_ok()));
+                        }
                     }
                 }
             }

@@ -210,7 +210,7 @@ impl Runner<'_> {
 }
 
 fn budget_reason(budget: Duration) -> String {
-    format!("the budget of {} s was spent before its turn", budget.as_secs_f64())
+    format!("the budget of {:.1} s was spent before its turn", budget.as_secs_f64())
 }
 
 /// An error in a table: its help is for another place.

@@ -5,7 +5,7 @@ use glam::UVec2;
 use super::RunFile;
 use crate::image::Image;
 use crate::measure::RadiusSummary;
-use crate::measure::bench::{BenchSettings, MapInfo, MapSource, Protocol, Report, Run, Stage};
+use crate::measure::bench::{BenchSettings, Case, MapInfo, MapSource, Protocol, Report, Run, Stage};
 use crate::measure::thesis::claims::OrderPoint;
 use crate::measure::thesis::density::{self, SEARCH};
 use crate::measure::thesis::quantity::{Measured, Measurements, Quantity, Timing};
@@ -134,11 +134,7 @@ fn order_map(density: f64) -> MapSource {
 }
 
 /// The run of a stage on the map of a part that `is_it` picks.
-fn find<'a>(
-    report: &'a Report,
-    stage: Stage,
-    is_it: impl Fn(&crate::measure::bench::Case) -> bool,
-) -> Option<&'a Run> {
+fn find(report: &Report, stage: Stage, is_it: impl Fn(&Case) -> bool) -> Option<&Run> {
     report.runs.iter().find(|run| run.case.stage == stage && is_it(&run.case))
 }
 
@@ -164,7 +160,7 @@ pub(super) fn measurements(run: &RunFile) -> Measurements {
 fn timing(run: &RunFile, quantity: Quantity, row: u32) -> Timing {
     let (name, stage, order, samples) = place(quantity);
     let by_radius = quantity == Quantity::SatSearchByMaxRadius;
-    let is_it = |case: &crate::measure::bench::Case| {
+    let is_it = |case: &Case| {
         (case.size[0] == row || by_radius)
             && (case.max_radius == Some(row) || !by_radius)
             && (case.search == order || order.is_none())
