@@ -1,7 +1,7 @@
 //! The thesis's tables and claims, timed and judged on this machine, in one go.
 //!
-//! What needs neither clock nor OpenGL is counted first; then come the timing runs, each part of [`parts`] a run of
-//! [`bench`] with a share of the budget, and last what the changes of chapter 6 gain. Everything is kept in a [`RunFile`],
+//! What needs neither clock nor OpenGL is counted first; then come the timing runs, each part a run of
+//! [`bench`](mod@crate::measure::bench) with a share of the budget, and last what the changes of chapter 6 gain. Everything is kept in a [`RunFile`],
 //! which is saved as it grows and can be gone on with.
 
 mod gains;
