@@ -5,6 +5,7 @@
 
 #![expect(unsafe_code, reason = "OpenGL is a C interface; design rule 8 confines it to this module")]
 
+mod device_info;
 mod pass;
 mod program;
 mod source;
@@ -12,6 +13,7 @@ mod state;
 mod texture;
 mod timer;
 
+pub use device_info::DeviceInfo;
 pub(crate) use pass::{Pass, Target};
 pub(crate) use program::Program;
 pub use source::ShaderSource;
@@ -50,42 +52,6 @@ struct Inner {
 }
 
 type GetBooleaniV = unsafe extern "system" fn(target: u32, index: u32, data: *mut u8);
-
-/// What a context says of itself.
-#[derive(Clone, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
-pub struct DeviceInfo {
-    /// GL_RENDERER.
-    pub renderer: String,
-    /// GL_VENDOR.
-    pub vendor: String,
-    /// GL_VERSION: the context's version and the driver's.
-    pub version: String,
-    /// GL_SHADING_LANGUAGE_VERSION.
-    pub glsl_version: String,
-    /// Whether the renderer's name is that of a software renderer (llvmpipe, softpipe, swrast, SwiftShader).
-    pub software: bool,
-    /// The longest side of a map, in pixels: GL_MAX_TEXTURE_SIZE, or GL_MAX_VIEWPORT_DIMS where that is less.
-    pub max_texture_size: u32,
-    /// GL_MAX_DRAW_BUFFERS: render targets of one pass.
-    pub max_draw_buffers: u32,
-    /// GL_MAX_TEXTURE_IMAGE_UNITS: textures that one pass may read.
-    pub max_texture_units: u32,
-}
-
-impl DeviceInfo {
-    /// Whether this is llvmpipe, whose GL_TIME_ELAPSED needs a glFinish to be true.
-    #[must_use]
-    pub fn is_llvmpipe(&self) -> bool {
-        self.renderer.to_lowercase().contains("llvmpipe")
-    }
-
-    /// Whether this is softpipe, Mesa's interpreter.
-    #[must_use]
-    pub fn is_softpipe(&self) -> bool {
-        self.renderer.to_lowercase().contains("softpipe")
-    }
-}
 
 impl Gl {
     /// Loads the commands of the current context through `loader`.
@@ -156,7 +122,7 @@ impl Gl {
         has_debug_groups: bool,
         context: Option<Box<dyn Any>>,
     ) -> Result<Self> {
-        let info = device_info(&glow);
+        let info = DeviceInfo::of(&glow);
         let version = glow.version();
         if version.is_embedded || (version.major, version.minor) < (3, 3) {
             return Err(Error::Version { version: info.version, renderer: info.renderer });
@@ -320,30 +286,6 @@ fn check_current(loader: &mut impl FnMut(&CStr) -> *const c_void) -> Result<()> 
         return Err(Error::NoContext("no OpenGL context is current on this thread".to_owned()));
     }
     Ok(())
-}
-
-fn device_info(glow: &glow::Context) -> DeviceInfo {
-    // SAFETY: the context is current; these are states of every 3.x context.
-    unsafe {
-        let text = |name| glow.get_parameter_string(name);
-        let limit = |name| u32::try_from(glow.get_parameter_i32(name)).unwrap_or(0);
-        let mut viewport = [0; 2];
-        glow.get_parameter_i32_slice(glow::MAX_VIEWPORT_DIMS, &mut viewport);
-        let largest_viewport = u32::try_from(viewport[0].min(viewport[1])).unwrap_or(0);
-        let renderer = text(glow::RENDERER);
-        let software =
-            ["llvmpipe", "softpipe", "swrast", "SwiftShader"].iter().any(|name| renderer.contains(name));
-        DeviceInfo {
-            renderer,
-            vendor: text(glow::VENDOR),
-            version: text(glow::VERSION),
-            glsl_version: text(glow::SHADING_LANGUAGE_VERSION),
-            software,
-            max_texture_size: limit(glow::MAX_TEXTURE_SIZE).min(largest_viewport),
-            max_draw_buffers: limit(glow::MAX_DRAW_BUFFERS),
-            max_texture_units: limit(glow::MAX_TEXTURE_IMAGE_UNITS),
-        }
-    }
 }
 
 unsafe fn sampler(glow: &glow::Context, minification: u32) -> Result<glow::Sampler> {

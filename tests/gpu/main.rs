@@ -6,6 +6,7 @@ mod approximate;
 mod exactness;
 mod faults;
 mod host;
+mod objects;
 mod radius;
 mod shaders;
 mod state;
