@@ -20,6 +20,7 @@ Examples:
   varikernel radius map.exr -o radius.png      a picture of its radius map
   varikernel radius map.exr -o radius.exr --verify --method pyramid
   varikernel compare radius.exr other.npy      how two maps differ
+  varikernel reproduce                         the thesis's numbers from this machine
   varikernel devices                           the OpenGL devices found here";
 
 /// Variable-kernel radius maps from photon density maps, exact, in OpenGL 3.3 core.
@@ -40,11 +41,11 @@ pub(crate) struct Cli {
 #[derive(Debug, Subcommand)]
 enum Verb {
     Radius(radius::Args),
+    Bench(bench::Args),
+    Reproduce(reproduce::Args),
     Compare(compare::Args),
     Synth(synth::Args),
-    Reproduce(reproduce::Args),
     Devices(devices::Args),
-    Bench(Box<bench::Args>),
 }
 
 /// What a verb that did its job found.

@@ -29,11 +29,12 @@ pub(crate) struct Args {
     #[arg(short, long, default_value = "reproduction", value_name = "FOLDER")]
     output: PathBuf,
 
-    /// Time for all timing runs, such as 90s or 10m; what does not fit says so in the tables.
-    #[arg(long, default_value = "4m", value_parser = humantime::parse_duration)]
-    budget: Duration,
+    /// Time for all timing runs, such as 90s or 10m; what does not fit says so in the tables [default: 4m, or 24h with
+    /// --full].
+    #[arg(long, value_parser = humantime::parse_duration)]
+    budget: Option<Duration>,
 
-    /// Take the thesis's 5 sets of 1000 iterations for every cell, with a budget of a day unless --budget says less.
+    /// Take the thesis's 5 sets of 1000 iterations for every cell, as far as the budget goes.
     #[arg(long)]
     full: bool,
 
@@ -51,11 +52,10 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(args: &Args) -> Result<Outcome> {
-    if args.budget < Duration::from_secs(5) {
-        bail!(
-            "--budget {:?} is not possible: give at least 5s, for a sample of the smallest maps",
-            args.budget
-        );
+    let usual = Duration::from_secs(if args.full { 24 * 3600 } else { 4 * 60 });
+    let budget = args.budget.unwrap_or(usual);
+    if budget < Duration::from_secs(5) {
+        bail!("--budget {budget:?} is not possible: give at least 5s, for a sample of the smallest maps");
     }
     for folder in [args.output.clone(), args.output.join("tables"), args.output.join("figures")] {
         fs::create_dir_all(&folder).with_context(|| format!("can't make the folder {}", folder.display()))?;
@@ -80,7 +80,6 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
 
     let bar = progress_bar();
     let mut saved = Instant::now();
-    let budget = if args.full { args.budget.max(Duration::from_secs(24 * 3600)) } else { args.budget };
     let run = reproduce::time(&gl, real, budget, args.full, (earlier, &run_json), &mut |run, progress| {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of 1000")]
         bar.set_position((1000.0 * progress.done) as u64);

@@ -194,7 +194,11 @@ fn options_out_of_their_range() {
 fn radii_past_what_a_method_does_on_llvmpipe() {
     refuses_options(
         "-r 2000 --method brute-force --device llvmpipe",
-        &["--max-radius 2000 is not possible", "65535", "lower MR or use the summed-area table"],
+        &[
+            "--max-radius 2000 is not possible",
+            "65535",
+            "lower MR, search in forward order, or use the summed-area table",
+        ],
     );
 }
 
