@@ -23,15 +23,11 @@ pub(crate) fn print(text: &str) -> Result<()> {
 
 /// A table of names and values for people.
 pub(crate) fn print_facts(facts: &[(&str, String)]) -> Result<()> {
-    let mut table = Table::new();
-    table.load_style(NOTHING).set_content_arrangement(ContentArrangement::Dynamic).set_width(WIDTH);
-    for (name, value) in facts {
-        table.add_row([*name, value]);
-    }
-    print(&table.trim_fmt())
+    let rows: Vec<_> = facts.iter().map(|(name, value)| [(*name).to_owned(), value.clone()]).collect();
+    print_rows(&rows)
 }
 
-/// Rows of columns for people, the last column broken where it does not fit.
+/// Rows of columns for people, broken where they do not fit.
 pub(crate) fn print_rows<const COLUMNS: usize>(rows: &[[String; COLUMNS]]) -> Result<()> {
     let mut table = Table::new();
     table.load_style(NOTHING).set_content_arrangement(ContentArrangement::Dynamic).set_width(WIDTH);

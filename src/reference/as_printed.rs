@@ -4,7 +4,7 @@
 
 use glam::{IVec2, UVec2};
 
-use super::{Inside, Radii, enough, total_area};
+use super::{Inside, Radii, binary_search, enough, total_area};
 use crate::image::Image;
 use crate::settings::{Edges, Faults, Order, SatSamples, Search};
 
@@ -57,18 +57,7 @@ pub fn radius(density: &Image<u32>, search: Search, samples: SatSamples, faults:
         };
         match search.order {
             Order::Forward => (1..=search.max_radius).find(|&radius| holds_enough(radius)),
-            Order::Binary => {
-                let (mut first, mut last, mut found) = (1, search.max_radius, false);
-                while first < last {
-                    let middle = first.midpoint(last);
-                    if holds_enough(middle) {
-                        (last, found) = (middle, true);
-                    } else {
-                        first = middle + 1;
-                    }
-                }
-                (found || holds_enough(first)).then_some(first)
-            }
+            Order::Binary => binary_search(search.max_radius, holds_enough),
         }
     })
 }

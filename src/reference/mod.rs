@@ -11,7 +11,7 @@ mod table;
 
 pub use definition::{enough, radius};
 pub use naive_mipmap::naive_mipmap;
-pub use table::{Table, radius_by_table};
+pub use table::{Table, binary_search, radius_by_table};
 
 use glam::UVec2;
 

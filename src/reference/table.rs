@@ -44,6 +44,20 @@ impl Table {
     }
 }
 
+/// Halves the range from 1 to `max_radius`, as thesis 3.5; nothing if what is left does not hold enough either.
+pub fn binary_search(max_radius: u32, holds_enough: impl Fn(u32) -> bool) -> Option<u32> {
+    let (mut first, mut last) = (1, max_radius);
+    while first < last {
+        let middle = first.midpoint(last);
+        if holds_enough(middle) {
+            last = middle;
+        } else {
+            first = middle + 1;
+        }
+    }
+    holds_enough(first).then_some(first)
+}
+
 /// Equal to [`radius`](super::radius) on every map, in O(log MR) a pixel.
 ///
 /// Both edge rules are monotone in the radius, so halving the range finds the same radius: with zero the count only
@@ -56,15 +70,6 @@ pub fn radius_by_table(density: &Image<u32>, search: Search) -> Radii {
             let inside = Inside::of_box(density.size(), x, y, radius);
             enough(table.count(inside), total_area(radius), inside.area(), search)
         };
-        let (mut first, mut last) = (1, search.max_radius);
-        while first < last {
-            let middle = first.midpoint(last);
-            if holds_enough(middle) {
-                last = middle;
-            } else {
-                first = middle + 1;
-            }
-        }
-        holds_enough(first).then_some(first)
+        binary_search(search.max_radius, holds_enough)
     })
 }

@@ -129,19 +129,22 @@ fn print_warnings(report: &Report) -> Result<()> {
             None => lines.push((map, left_out.reason.clone(), vec![&left_out.case])),
         }
     }
-    for (map, reason, cases) in lines {
-        match cases.as_slice() {
-            [case] => output::print(&format!("left out: {case}: {reason}"))?,
-            cases => {
-                let mut names: Vec<&str> = cases.iter().map(|case| case.variant.as_str()).collect();
-                names.sort_unstable();
-                names.dedup();
-                let (count, names) = (cases.len(), names.join(", "));
-                output::print(&format!("left out: {count} cases of {map} ({names}): {reason}"))?;
-            }
-        }
-    }
-    Ok(())
+    let rows: Vec<_> = lines
+        .into_iter()
+        .map(|(map, reason, cases)| {
+            let what = match cases.as_slice() {
+                [case] => case.to_string(),
+                cases => {
+                    let mut names: Vec<&str> = cases.iter().map(|case| case.variant.as_str()).collect();
+                    names.sort_unstable();
+                    names.dedup();
+                    format!("{} cases of {map} ({})", cases.len(), names.join(", "))
+                }
+            };
+            ["left out".to_owned(), format!("{what}: {reason}")]
+        })
+        .collect();
+    if rows.is_empty() { Ok(()) } else { output::print_rows(&rows) }
 }
 
 /// Ratios of two runs with a verdict each.

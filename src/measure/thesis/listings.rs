@@ -144,16 +144,7 @@ fn radius_by_float_table(density: &Image<u32>, search: Search) -> Image<u32> {
             let photons = photons.max(0.0) as u64;
             enough(photons, total_area(radius), inside.area(), search)
         };
-        let (mut first, mut last) = (1, search.max_radius);
-        while first < last {
-            let middle = first.midpoint(last);
-            if holds_enough(middle) {
-                last = middle;
-            } else {
-                first = middle + 1;
-            }
-        }
-        first
+        reference::binary_search(search.max_radius, holds_enough).unwrap_or(search.max_radius)
     })
 }
 
