@@ -20,6 +20,18 @@ pub enum Unit {
 }
 
 impl Unit {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Copy, Self::Probe];
+
+    /// Its shader.
+    #[must_use]
+    pub fn source(self) -> ShaderSource {
+        ShaderSource::new(self.label()).file(match self {
+            Self::Copy => glsl!("measure/copy.frag"),
+            Self::Probe => glsl!("measure/probe.frag"),
+        })
+    }
+
     fn label(self) -> &'static str {
         match self {
             Self::Copy => "copy",
@@ -62,11 +74,7 @@ impl UnitPass {
     /// [`Error::TooLarge`], [`Error::Shader`], or [`Error::Gl`] when memory runs out.
     pub fn new(gl: &Gl, unit: Unit, size: UVec2) -> Result<Self> {
         let _state = StateGuard::new(gl);
-        let source = ShaderSource::new(unit.label()).file(match unit {
-            Unit::Copy => glsl!("measure/copy.frag"),
-            Unit::Probe => glsl!("measure/probe.frag"),
-        });
-        let program = Program::new(gl, &source)?;
+        let program = Program::new(gl, &unit.source())?;
         let target = Target::single(gl, Texture::new(gl, TextureFormat::R32Uint, size, 1)?)?;
         Ok(Self { gl: gl.clone(), unit, program, target })
     }

@@ -8,6 +8,7 @@ use std::ffi::CStr;
 use std::process::Command;
 
 use varikernel::gl::{ShaderSource, TextureFormat};
+use varikernel::measure::Unit;
 use varikernel::pipeline::shader_sources;
 use varikernel::settings::{
     Edges, Faults, Matching, Method, Order, SatSamples, Search, Settings, Split, Storage, Variation,
@@ -60,7 +61,7 @@ fn all_settings() -> Vec<Settings> {
 }
 
 fn all_sources() -> Vec<ShaderSource> {
-    let mut sources = BTreeMap::new();
+    let mut sources = BTreeMap::from(Unit::ALL.map(|unit| (unit.source().fragment(), unit.source())));
     for settings in all_settings() {
         for format in [TextureFormat::R32Uint, TextureFormat::R32Float] {
             for source in shader_sources(format, &settings) {
