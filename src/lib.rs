@@ -7,10 +7,11 @@
 //!
 //! # Use
 //! ```no_run
-//! # fn main() -> varikernel::Result<()> {
-//! # fn loader(_: &std::ffi::CStr) -> *const std::ffi::c_void { std::ptr::null() }
-//! # let host_texture: glow::Texture = unimplemented!();
-//! # let photons_drawn = 1_000_000;
+//! # fn host(
+//! #     loader: impl FnMut(&std::ffi::CStr) -> *const std::ffi::c_void,
+//! #     host_texture: glow::Texture,
+//! #     photons_drawn: u64,
+//! # ) -> varikernel::Result<()> {
 //! use varikernel::settings::{Edges, Order, Search};
 //! use varikernel::{CountBounds, DensityMap, Gl, RadiusPipeline, Settings};
 //!

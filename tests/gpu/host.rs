@@ -8,7 +8,7 @@ use std::sync::Arc;
 use glam::UVec2;
 use glow::HasContext as _;
 use varikernel::gl::TextureFormat;
-use varikernel::settings::{Edges, Method, Settings};
+use varikernel::settings::{Edges, Method, Settings, Storage};
 use varikernel::{CountBounds, DensityMap, Error, Gl, Image, RadiusPipeline, context, reference};
 
 use crate::support::{egl, osmesa, random_map, search, working_candidates};
@@ -75,17 +75,17 @@ fn textures_of_the_host_are_read_in_each_format() {
                 texture(&gl, glow::R8UI, glow::RED_INTEGER, glow::UNSIGNED_BYTE, density.size(), &bytes),
             ),
         ] {
-            let map = DensityMap::borrow(&gl, texture, CountBounds::UNKNOWN).unwrap();
+            // The host knows how many photons it has drawn.
+            let map = DensityMap::borrow(&gl, texture, CountBounds::total_at_most(4 * 37 * 20)).unwrap();
             assert_eq!((map.format(), map.size()), (format, density.size()));
             for method in [Method::BruteForce, Method::Pyramid, Method::SummedAreaTable] {
-                let settings =
-                    Settings { search: search(25, 16, Edges::Scale), method, ..Settings::default() };
-                let mut pipeline = RadiusPipeline::new(&gl, map.size(), map.format(), settings).unwrap();
-                assert_eq!(
-                    pipeline.render(&map).unwrap().read().unwrap(),
-                    expected,
-                    "{format:?}, {method:?}"
-                );
+                for storage in [Storage::U32, Storage::F32] {
+                    let search = search(25, 16, Edges::Scale);
+                    let settings = Settings { search, method, storage, ..Settings::default() };
+                    let mut pipeline = RadiusPipeline::new(&gl, map.size(), map.format(), settings).unwrap();
+                    let found = pipeline.render(&map).unwrap().read().unwrap();
+                    assert_eq!(found, expected, "{format:?}, {method:?}, {storage:?}");
+                }
             }
             drop(map);
             // SAFETY: the context is current.
