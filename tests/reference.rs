@@ -182,9 +182,14 @@ fn the_costliest_oblong_boxes_stay_below_the_bound() {
             assert!(blocks <= most_blocks(side / 2), "{split:?} {inside:?}: {blocks}");
         }
     }
-    let widest = Inside { lo: UVec2::new(23, 0), hi: UVec2::new(153, 254) };
-    let blocks = pyramid::cover(widest, 7, Split::Larger, Faults::NONE).blocks.len();
-    assert_eq!(blocks, 17_292, "the larger rule grows with the area there");
+    // The larger rule grows with the area there.
+    for (lo, hi, level, blocks) in [
+        (UVec2::new(7, 14), UVec2::new(41, 78), 6, 1294),
+        (UVec2::new(23, 0), UVec2::new(153, 254), 7, 17_292),
+    ] {
+        let cover = pyramid::cover(Inside { lo, hi }, level, Split::Larger, Faults::NONE);
+        assert_eq!(cover.blocks.len(), blocks, "{lo} to {hi}");
+    }
 }
 
 #[test]

@@ -4,7 +4,8 @@ use std::path::Path;
 
 use varikernel::image::{ReadOptions, read_counts};
 use varikernel::measure::report::{Report, figure_svg, table_csv};
-use varikernel::measure::thesis::claims::{self, Evidence, Gain, OrderPoint, Verdict};
+use varikernel::measure::thesis::claims::{self, Verdict};
+use varikernel::measure::thesis::evidence::{Evidence, Gain, OrderPoint};
 use varikernel::measure::thesis::quantity::{Measured, Measurements, Quantity, Timing};
 use varikernel::measure::thesis::{figures, tables};
 

@@ -61,7 +61,8 @@ pub fn binary_search(max_radius: u32, holds_enough: impl Fn(u32) -> bool) -> Opt
 /// Equal to [`radius`](super::radius) on every map, in O(log MR) a pixel.
 ///
 /// Both edge rules are monotone in the radius, so halving the range finds the same radius: with zero the count only
-/// grows, and with scale a box that holds n of its share at one radius does so at the next (facts in `exactness`).
+/// grows, and with scale a box that holds n of its share at one radius does so at the next
+/// (`tests/reference.rs` compares them).
 #[must_use]
 pub fn radius_by_table(density: &Image<u32>, search: Search) -> Radii {
     let table = Table::new(density);

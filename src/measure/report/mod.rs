@@ -11,7 +11,8 @@ pub use plot::{figure_svg, orders_svg};
 pub use view::table_csv;
 
 use crate::measure::reproduce::OtherMap;
-use crate::measure::thesis::claims::{self, Evidence, Judged};
+use crate::measure::thesis::claims::{self, Judged};
+use crate::measure::thesis::evidence::Evidence;
 use crate::measure::thesis::{figures, tables};
 
 /// What the page tells.

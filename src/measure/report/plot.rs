@@ -9,7 +9,7 @@ use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint, Ranged, ValueFo
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 
-use crate::measure::thesis::claims::OrderPoint;
+use crate::measure::thesis::evidence::OrderPoint;
 use crate::measure::thesis::figures::Figure;
 use crate::measure::thesis::quantity::{Card, Measurements};
 use crate::measure::thesis::tables::printed_series;

@@ -18,13 +18,13 @@ use crate::gl::Gl;
 use crate::image::{Image, write_atomically};
 use crate::maps::DensityMap;
 use crate::measure::bench::{self, Protocol};
-use crate::measure::thesis::claims::{Evidence, Gain, Group, Judged, LargerSmaller, OrderPoint};
-use crate::measure::thesis::{claims, quantity::Measurements};
+use crate::measure::thesis::claims::{self, Group, Judged};
+use crate::measure::thesis::evidence::{Evidence, Gain, LargerSmaller};
 use crate::pipeline::RadiusPipeline;
 use crate::reference;
 use crate::settings::{Method, Settings};
 
-pub use parts::{OtherMap, Part};
+pub use parts::{OtherMap, Part, measurements, orders, other_maps};
 
 /// The share of the budget that goes to gains; the parts divide the rest.
 const GAINS_SHARE: f64 = 0.1;
@@ -181,24 +181,6 @@ pub fn counted(gl: &Gl, (real_map, real_name): (&Image<u32>, &str)) -> Result<Ev
 #[must_use]
 pub fn with_timings(counted: Evidence, run: &RunFile) -> Evidence {
     Evidence { measurements: measurements(run), orders: orders(run), gains: run.gains.clone(), ..counted }
-}
-
-/// The cells of the tables.
-#[must_use]
-pub fn measurements(run: &RunFile) -> Measurements {
-    parts::measurements(run)
-}
-
-/// Forward against binary, by falling density.
-#[must_use]
-pub fn orders(run: &RunFile) -> Vec<OrderPoint> {
-    parts::orders(run)
-}
-
-/// The sparse, the dense and the real map beside the thesis-like ones.
-#[must_use]
-pub fn other_maps(run: &RunFile) -> Vec<OtherMap> {
-    parts::other_maps(run)
 }
 
 /// All claims with their answers and the time that their evidence took.

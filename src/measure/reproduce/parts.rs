@@ -6,8 +6,8 @@ use super::RunFile;
 use crate::image::Image;
 use crate::measure::RadiusSummary;
 use crate::measure::bench::{BenchSettings, Case, MapInfo, MapSource, Protocol, Report, Run, Stage};
-use crate::measure::thesis::claims::OrderPoint;
 use crate::measure::thesis::density::{self, SEARCH};
+use crate::measure::thesis::evidence::OrderPoint;
 use crate::measure::thesis::quantity::{Measured, Measurements, Quantity, Timing};
 use crate::measure::thesis::tables;
 use crate::reference;
@@ -152,7 +152,8 @@ fn place(quantity: Quantity) -> (&'static str, Stage, Option<Order>, Option<SatS
 }
 
 /// Every cell of the tables.
-pub(super) fn measurements(run: &RunFile) -> Measurements {
+#[must_use]
+pub fn measurements(run: &RunFile) -> Measurements {
     let cell = |(quantity, row)| Measured { quantity, row, timing: timing(run, quantity, row) };
     Measurements(tables::cells().into_iter().map(cell).collect())
 }
@@ -181,7 +182,9 @@ fn timing(run: &RunFile, quantity: Quantity, row: u32) -> Timing {
     }
 }
 
-pub(super) fn orders(run: &RunFile) -> Vec<OrderPoint> {
+/// Forward against binary, by falling density.
+#[must_use]
+pub fn orders(run: &RunFile) -> Vec<OrderPoint> {
     let Some(part) = run.part(ORDERS) else { return Vec::new() };
     let median = |map: &MapInfo, order| {
         let run =
@@ -207,7 +210,9 @@ pub struct OtherMap {
     pub times: Vec<(String, f64, Option<f64>)>,
 }
 
-pub(super) fn other_maps(run: &RunFile) -> Vec<OtherMap> {
+/// The sparse, the dense and the real map beside the thesis-like ones.
+#[must_use]
+pub fn other_maps(run: &RunFile) -> Vec<OtherMap> {
     let Some(part) = run.part(OTHER_MAPS) else { return Vec::new() };
     let of_map = |map: &MapInfo| {
         let wanted = [Stage::Build, Stage::Search, Stage::Frame];

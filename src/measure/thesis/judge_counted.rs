@@ -1,7 +1,8 @@
 //! Claims that counting and comparing radii decide.
 
-use super::claims::{Evidence, Judgement, LargerSmaller, Verdict};
+use super::claims::{Judgement, Verdict};
 use super::counted::{self, PyramidCost};
+use super::evidence::{Evidence, LargerSmaller};
 use super::{density, example, listings};
 use crate::measure::Difference;
 use crate::settings::Split;

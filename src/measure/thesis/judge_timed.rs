@@ -2,8 +2,9 @@
 //!
 //! Each is judged at every size that was timed; one that holds at some only says at which.
 
-use super::claims::{Evidence, Gain, Judgement, OrderPoint, Verdict};
+use super::claims::{Judgement, Verdict};
 use super::density::line;
+use super::evidence::{Evidence, Gain, OrderPoint};
 use super::quantity::{Measurements, Quantity};
 use crate::settings::{Order, SatSamples};
 use Quantity::{BruteForce, PyramidBuild, PyramidFrame, SatBuild, SatFrame, SatSearch, SatSearchByMaxRadius};

@@ -5,11 +5,12 @@
 //! - [`counted`], [`example`]: what needs no clock; fetches, stack depths, and the map of Figures 3.2 to 3.4.
 //! - [`density`]: how dense the unpublished input was, as far as the tables tell, and maps of that density.
 //! - [`listings`]: what the faults of the listings spoil, and where a table in f32 breaks.
-//! - [`claims`]: every statement that can be checked, and how it is judged from [`Evidence`](claims::Evidence).
+//! - [`claims`]: every statement that can be checked, and how it is judged from the [`evidence`].
 
 pub mod claims;
 pub mod counted;
 pub mod density;
+pub mod evidence;
 pub mod example;
 pub mod figures;
 mod judge_counted;
