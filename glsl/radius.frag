@@ -12,6 +12,10 @@ uniform int last_radius;
 // What the passes over smaller radii found, 0 where they found nothing.
 uniform usampler2D found_before;
 #endif
+#ifdef ORDER_BRACKETED
+// The smallest and the largest radius that any pixel of a block of 2 x 2 can have.
+uniform usampler2D brackets;
+#endif
 
 layout(location = 0) out uint radius;
 #ifdef LIMITED_MASK
@@ -56,6 +60,21 @@ void main()
             r = 0;
         }
     }
+#elif defined(ORDER_BRACKETED)
+    uint bracket = texelFetch(brackets, center >> 1, 0).r;
+    int r = int(bracket & 0xFFFFu);
+    int last = int(bracket >> 16);
+    while (r < last) {
+        int middle = (r + last) / 2;
+        if (enough_within(center, middle)) {
+            last = middle;
+        } else {
+            r = middle + 1;
+        }
+    }
+    // A bracket reaches past MR where the mask asks whether MR was enough.
+    bool found = r <= max_radius;
+    r = min(r, max_radius);
 #else
     // Everything below `r` is known to be too small, `last` is known to be enough or is MR.
     int r = 1;

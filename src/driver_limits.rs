@@ -43,6 +43,8 @@ pub(crate) fn passes(device: &DeviceInfo, settings: &Settings) -> Result<Vec<Ran
     let (ranges, most_turns) = match settings.search.order {
         Order::Forward => forward_ranges(settings),
         Order::Binary => (vec![1..=max_radius], binary_turns(settings)),
+        // A few dozen turns for whatever MR.
+        Order::Bracketed => (vec![1..=max_radius], 0),
     };
     if most_turns <= LLVMPIPE_TURNS {
         return Ok(ranges);

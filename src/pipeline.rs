@@ -7,8 +7,8 @@ use crate::error::{Error, Result};
 use crate::exactness::{self, Plan};
 use crate::gl::{Gl, ShaderSource, StateGuard, TextureFormat};
 use crate::maps::{DensityMap, RadiusMap};
-use crate::radius::{self, Continued, RadiusSearch};
-use crate::settings::{Method, Order, Settings};
+use crate::radius::{self, RadiusSearch};
+use crate::settings::Settings;
 use crate::structure::{self, Structure};
 
 /// Density map in, radius map out, for one size and one set of settings.
@@ -152,9 +152,6 @@ impl RadiusPipeline {
 #[must_use]
 pub fn shader_sources(density_format: TextureFormat, settings: &Settings) -> Vec<ShaderSource> {
     let mut sources = structure::build_sources(density_format, settings);
-    sources.push(radius::search_source(density_format, settings, Continued::No));
-    if settings.search.order == Order::Forward && settings.method != Method::NaiveMipmap {
-        sources.push(radius::search_source(density_format, settings, Continued::Yes));
-    }
+    sources.extend(radius::search_sources(density_format, settings));
     sources
 }

@@ -12,7 +12,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use varikernel::context::{self, DeviceChoice};
 use varikernel::image::{ReadOptions, check_writable, read_counts};
 use varikernel::measure::bench::{self, BenchSettings, MapSource, Progress, Protocol, Report};
-use varikernel::settings::{Edges, MAX_RADIUS_LIMIT, Method, Order, SatSamples};
+use varikernel::settings::{Edges, MAX_RADIUS_LIMIT, Method, Order, SatBuild, SatSamples};
 use varikernel::synth::Kind;
 
 use super::Outcome;
@@ -41,7 +41,7 @@ pub(crate) struct Args {
     methods: Vec<Method>,
 
     /// Orders of the search.
-    #[arg(long, value_enum, value_delimiter = ',', default_value = "forward,binary")]
+    #[arg(long, value_enum, value_delimiter = ',', default_value = "forward,binary,bracketed")]
     searches: Vec<Order>,
 
     /// MR: the radius at which a search ends, in pixels.
@@ -58,7 +58,11 @@ pub(crate) struct Args {
     #[arg(long, value_enum, value_delimiter = ',', default_value = "scale")]
     edges: Vec<Edges>,
 
-    /// Samples a pass when the summed-area table is built.
+    /// Builds of the summed-area table.
+    #[arg(long, value_enum, value_delimiter = ',', default_value = "doubling,scan")]
+    sat_build: Vec<SatBuild>,
+
+    /// Samples a pass when the summed-area table is built by doubling.
     #[arg(long, value_enum, value_delimiter = ',', default_value = "2,4")]
     sat_samples: Vec<SatSamples>,
 
@@ -142,6 +146,7 @@ fn settings(args: &Args) -> BenchSettings {
     };
     BenchSettings {
         methods: args.methods.clone(),
+        sat_builds: args.sat_build.clone(),
         sat_samples: args.sat_samples.clone(),
         searches: args.searches.clone(),
         min_photons: args.min_photons.clone(),

@@ -12,8 +12,8 @@ use varikernel::image::{
 };
 use varikernel::measure::{Difference, RadiusSummary, total_photons};
 use varikernel::settings::{
-    Edges, Exactness, Faults, Matching, Method, Order, SatSamples, Search, Settings, Split, Storage,
-    Variation,
+    Edges, Exactness, Faults, Matching, Method, Order, SatBuild, SatSamples, Search, Settings, Split,
+    Storage, Variation,
 };
 use varikernel::{CountBounds, DensityMap, Error, Image, RadiusPipeline, reference};
 
@@ -52,7 +52,11 @@ pub(crate) struct Args {
     #[arg(long, value_enum, default_value_t = Order::Binary)]
     search: Order,
 
-    /// Samples a pass when the summed-area table is built (thesis 4.2).
+    /// How the summed-area table is built: by doubling (thesis 4.2) or by a scan, which is for u32 and u16.
+    #[arg(long, value_enum, default_value_t = SatBuild::Scan, default_value_if("storage", "f32", "doubling"))]
+    sat_build: SatBuild,
+
+    /// Samples a pass when the summed-area table is built by doubling (thesis 4.2).
     #[arg(long, value_enum, default_value_t = SatSamples::Four)]
     sat_samples: SatSamples,
 
@@ -271,6 +275,7 @@ fn settings(args: &Args) -> Settings {
         method: args.method,
         split: args.split,
         matching: args.matching,
+        sat_build: args.sat_build,
         sat_samples: args.sat_samples,
         storage: args.storage,
         faults: faults(args),

@@ -8,7 +8,7 @@ use super::state::{DRAW_BUFFERS, UNITS};
 use super::{Gl, Program, Texture, gl_error};
 use crate::error::{Error, Result};
 
-/// Textures to draw into, one per draw buffer, with a framebuffer per level.
+/// Textures to draw into, one draw buffer per texture or layer of one, with a framebuffer per level.
 #[derive(Debug)]
 pub(crate) struct Target {
     gl: Gl,
@@ -27,7 +27,8 @@ impl Target {
             textures.iter().all(|t| t.size() == first.size() && t.levels() == first.levels()),
             "the textures of one target have one size"
         );
-        assert!(textures.len() <= DRAW_BUFFERS as usize, "StateGuard covers {DRAW_BUFFERS} draw buffers");
+        let buffers: u32 = textures.iter().map(|texture| texture.layers().unwrap_or(1)).sum();
+        assert!(buffers <= DRAW_BUFFERS, "StateGuard covers {DRAW_BUFFERS} draw buffers");
         let levels = first.levels();
         let mut target = Self { gl: gl.clone(), textures, framebuffers: Vec::new() };
         let glow = gl.glow();
@@ -37,16 +38,10 @@ impl Target {
                 let framebuffer = glow.create_framebuffer().map_err(|what| gl_error(glow, &what))?;
                 target.framebuffers.push(framebuffer);
                 glow.bind_framebuffer(glow::FRAMEBUFFER, Some(framebuffer));
-                let mut attachments = Vec::new();
-                for (attachment, texture) in (glow::COLOR_ATTACHMENT0..).zip(&target.textures) {
-                    glow.framebuffer_texture_2d(
-                        glow::FRAMEBUFFER,
-                        attachment,
-                        glow::TEXTURE_2D,
-                        Some(texture.name()),
-                        level.cast_signed(),
-                    );
-                    attachments.push(attachment);
+                let attachments: Vec<u32> = (glow::COLOR_ATTACHMENT0..).take(buffers as usize).collect();
+                let mut free = attachments.iter().copied();
+                for texture in &target.textures {
+                    texture.attach(&mut free, level);
                 }
                 glow.draw_buffers(&attachments);
                 let status = glow.check_framebuffer_status(glow::FRAMEBUFFER);
@@ -85,13 +80,16 @@ impl Target {
         self.textures[0].generate_mipmaps();
     }
 
-    /// Sets the first texture, of unsigned integers, to 0.
-    pub(super) fn clear(&self) {
-        // SAFETY: the context is current while the handle lives, and draw buffer 0 is an unsigned integer one.
+    /// Sets level 0 of the textures, of unsigned integers and without layers, to a value each.
+    pub(crate) fn clear(&mut self, values: &[u32]) {
+        assert_eq!(values.len(), self.textures.len(), "a value for each texture");
+        // SAFETY: the context is current while the handle lives, and the draw buffers are unsigned integer ones.
         unsafe {
             let glow = self.gl.glow();
             glow.bind_framebuffer(glow::DRAW_FRAMEBUFFER, Some(self.framebuffers[0]));
-            glow.clear_buffer_u32_slice(glow::COLOR, 0, &[0; 4]);
+            for (buffer, &value) in (0..).zip(values) {
+                glow.clear_buffer_u32_slice(glow::COLOR, buffer, &[value; 4]);
+            }
         }
     }
 

@@ -10,7 +10,7 @@ use super::Gl;
 /// Texture units that passes use.
 pub(super) const UNITS: u32 = 4;
 /// Draw buffers that passes use.
-pub(super) const DRAW_BUFFERS: u32 = 2;
+pub(super) const DRAW_BUFFERS: u32 = 8;
 
 const CAPABILITIES: [u32; 13] = [
     glow::CULL_FACE,
@@ -43,6 +43,14 @@ const PIXEL_STORE: [(u32, i32); 10] = [
     (glow::UNPACK_SWAP_BYTES, 0),
 ];
 
+/// What is bound to a texture unit.
+#[derive(Clone, Copy, Debug)]
+struct Unit {
+    plane: Option<glow::Texture>,
+    array: Option<glow::Texture>,
+    sampler: Option<glow::Sampler>,
+}
+
 /// Saves the state above and sets the library's own; puts the saved one back when dropped.
 #[derive(Debug)]
 pub(crate) struct StateGuard {
@@ -53,7 +61,7 @@ pub(crate) struct StateGuard {
     read_framebuffer: Option<glow::Framebuffer>,
     viewport: [i32; 4],
     active_texture: u32,
-    units: [(Option<glow::Texture>, Option<glow::Sampler>); UNITS as usize],
+    units: [Unit; UNITS as usize],
     draw_buffers: [(bool, [bool; 4]); DRAW_BUFFERS as usize],
     capabilities: [bool; CAPABILITIES.len()],
     polygon_mode: u32,
@@ -107,10 +115,11 @@ impl StateGuard {
                 active_texture,
                 units: std::array::from_fn(|unit| {
                     glow.active_texture(glow::TEXTURE0 + u32::try_from(unit).expect("few units"));
-                    (
-                        glow.get_parameter_texture(glow::TEXTURE_BINDING_2D),
-                        glow.get_parameter_sampler(glow::SAMPLER_BINDING),
-                    )
+                    Unit {
+                        plane: glow.get_parameter_texture(glow::TEXTURE_BINDING_2D),
+                        array: glow.get_parameter_texture(glow::TEXTURE_BINDING_2D_ARRAY),
+                        sampler: glow.get_parameter_sampler(glow::SAMPLER_BINDING),
+                    }
                 }),
                 draw_buffers: std::array::from_fn(|index| {
                     let index = u32::try_from(index).expect("few draw buffers");
@@ -152,9 +161,10 @@ impl Drop for StateGuard {
                 }
                 glow.color_mask_draw_buffer(index, red, green, blue, alpha);
             }
-            for (unit, (texture, sampler)) in (0..).zip(self.units) {
+            for (unit, Unit { plane, array, sampler }) in (0..).zip(self.units) {
                 glow.active_texture(glow::TEXTURE0 + unit);
-                glow.bind_texture(glow::TEXTURE_2D, texture);
+                glow.bind_texture(glow::TEXTURE_2D, plane);
+                glow.bind_texture(glow::TEXTURE_2D_ARRAY, array);
                 glow.bind_sampler(unit, sampler);
             }
             glow.active_texture(self.active_texture);

@@ -1,4 +1,4 @@
-//! Two-dimensional textures of one channel: ours, or borrowed from the host.
+//! Two-dimensional textures, plain or in layers: ours, or borrowed from the host.
 
 use bytemuck::Pod;
 use glam::UVec2;
@@ -8,7 +8,7 @@ use super::{Gl, gl_error};
 use crate::error::{Error, Result};
 use crate::image::Image;
 
-/// The formats that maps come in.
+/// The formats of maps and of what lies between them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub enum TextureFormat {
@@ -16,18 +16,25 @@ pub enum TextureFormat {
     R32Uint,
     /// GL_R32F: counts as additive blending writes them, or sums as the thesis keeps them.
     R32Float,
+    /// GL_R16UI: sums of boxes that hold less than 2^16.
+    R16Uint,
     /// GL_R8UI: masks.
     R8Uint,
+    /// GL_RGBA32UI: four neighbours in one texel, between passes only.
+    Rgba32Uint,
 }
 
 impl TextureFormat {
-    const ALL: [Self; 3] = [Self::R32Uint, Self::R32Float, Self::R8Uint];
+    /// What a host's map may be.
+    const OF_MAPS: [Self; 4] = [Self::R32Uint, Self::R32Float, Self::R16Uint, Self::R8Uint];
 
     fn internal(self) -> u32 {
         match self {
             Self::R32Uint => glow::R32UI,
             Self::R32Float => glow::R32F,
+            Self::R16Uint => glow::R16UI,
             Self::R8Uint => glow::R8UI,
+            Self::Rgba32Uint => glow::RGBA32UI,
         }
     }
 
@@ -35,21 +42,22 @@ impl TextureFormat {
         match self {
             Self::R32Uint => (glow::RED_INTEGER, glow::UNSIGNED_INT),
             Self::R32Float => (glow::RED, glow::FLOAT),
+            Self::R16Uint => (glow::RED_INTEGER, glow::UNSIGNED_SHORT),
             Self::R8Uint => (glow::RED_INTEGER, glow::UNSIGNED_BYTE),
+            Self::Rgba32Uint => (glow::RGBA_INTEGER, glow::UNSIGNED_INT),
         }
     }
 
-    fn sampler_kind(self) -> u32 {
-        match self {
-            Self::R32Uint | Self::R8Uint => glow::UNSIGNED_INT_SAMPLER_2D,
-            Self::R32Float => glow::SAMPLER_2D,
-        }
+    pub(super) fn is_float(self) -> bool {
+        self == Self::R32Float
     }
 
     fn texel_bytes(self) -> usize {
         match self {
             Self::R32Uint | Self::R32Float => 4,
+            Self::R16Uint => 2,
             Self::R8Uint => 1,
+            Self::Rgba32Uint => 16,
         }
     }
 
@@ -59,12 +67,14 @@ impl TextureFormat {
         match self {
             Self::R32Uint => "GL_R32UI",
             Self::R32Float => "GL_R32F",
+            Self::R16Uint => "GL_R16UI",
             Self::R8Uint => "GL_R8UI",
+            Self::Rgba32Uint => "GL_RGBA32UI",
         }
     }
 }
 
-/// A GL_TEXTURE_2D of one channel.
+/// A GL_TEXTURE_2D, or a GL_TEXTURE_2D_ARRAY.
 #[derive(Debug)]
 pub(crate) struct Texture {
     gl: Gl,
@@ -72,6 +82,8 @@ pub(crate) struct Texture {
     format: TextureFormat,
     size: UVec2,
     levels: u32,
+    /// Layers of an array.
+    layers: Option<u32>,
     ours: bool,
 }
 
@@ -82,6 +94,24 @@ impl Texture {
     /// # Errors
     /// [`Error::TooLarge`]; [`Error::Gl`] when memory runs out.
     pub(crate) fn new(gl: &Gl, format: TextureFormat, size: UVec2, levels: u32) -> Result<Self> {
+        Self::allocate(gl, format, size, levels, None)
+    }
+
+    /// Allocates an array of `layers` layers with one level, contents undefined.
+    ///
+    /// # Errors
+    /// [`Error::TooLarge`]; [`Error::Gl`] when memory runs out.
+    pub(crate) fn layered(gl: &Gl, format: TextureFormat, size: UVec2, layers: u32) -> Result<Self> {
+        Self::allocate(gl, format, size, 1, Some(layers))
+    }
+
+    fn allocate(
+        gl: &Gl,
+        format: TextureFormat,
+        size: UVec2,
+        levels: u32,
+        layers: Option<u32>,
+    ) -> Result<Self> {
         let limit = gl.info().max_texture_size;
         if size.max_element() > limit {
             return Err(Error::TooLarge { size, limit });
@@ -91,22 +121,10 @@ impl Texture {
         // `None` allocates.
         let texture = unsafe {
             let name = glow.create_texture().map_err(|what| gl_error(glow, &what))?;
-            let texture = Self { gl: gl.clone(), name, format, size, levels, ours: true };
+            let texture = Self { gl: gl.clone(), name, format, size, levels, layers, ours: true };
             texture.bind(0);
             for level in 0..levels {
-                let extent = texture.level_size(level).as_ivec2();
-                let (components, kind) = format.transfer();
-                glow.tex_image_2d(
-                    glow::TEXTURE_2D,
-                    level.cast_signed(),
-                    format.internal().cast_signed(),
-                    extent.x,
-                    extent.y,
-                    0,
-                    components,
-                    kind,
-                    glow::PixelUnpackData::Slice(None),
-                );
+                texture.allocate_level(level);
             }
             texture
         };
@@ -114,12 +132,50 @@ impl Texture {
         let minification = if levels > 1 { glow::NEAREST_MIPMAP_NEAREST } else { glow::NEAREST };
         // SAFETY: as above; the texture is bound.
         unsafe {
-            glow.tex_parameter_i32(glow::TEXTURE_2D, glow::TEXTURE_MIN_FILTER, minification.cast_signed());
-            glow.tex_parameter_i32(glow::TEXTURE_2D, glow::TEXTURE_MAG_FILTER, glow::NEAREST.cast_signed());
+            let target = texture.target();
+            glow.tex_parameter_i32(target, glow::TEXTURE_MIN_FILTER, minification.cast_signed());
+            glow.tex_parameter_i32(target, glow::TEXTURE_MAG_FILTER, glow::NEAREST.cast_signed());
         }
         texture.select_levels(0, levels - 1);
         gl.check(&format!("allocating a {} texture of {} x {}", format.name(), size.x, size.y))?;
         Ok(texture)
+    }
+
+    /// Allocates a level of the bound texture.
+    unsafe fn allocate_level(&self, level: u32) {
+        let glow = self.gl.glow();
+        let (width, height) = self.level_size(level).as_ivec2().into();
+        let (level, internal) = (level.cast_signed(), self.format.internal().cast_signed());
+        let (components, kind) = self.format.transfer();
+        let nothing = glow::PixelUnpackData::Slice(None);
+        // SAFETY: the caller has bound the texture, and no unpack buffer.
+        unsafe {
+            match self.layers {
+                None => glow.tex_image_2d(
+                    self.target(),
+                    level,
+                    internal,
+                    width,
+                    height,
+                    0,
+                    components,
+                    kind,
+                    nothing,
+                ),
+                Some(layers) => glow.tex_image_3d(
+                    self.target(),
+                    level,
+                    internal,
+                    width,
+                    height,
+                    layers.cast_signed(),
+                    0,
+                    components,
+                    kind,
+                    nothing,
+                ),
+            }
+        }
     }
 
     /// Wraps a texture that stays the host's, after asking the driver what it is.
@@ -152,9 +208,9 @@ impl Texture {
         if size.min_element() == 0 {
             return Err(mismatch("an image at level 0".to_owned(), "none".to_owned()));
         }
-        let format = TextureFormat::ALL.into_iter().find(|format| format.internal() == internal);
+        let format = TextureFormat::OF_MAPS.into_iter().find(|format| format.internal() == internal);
         let Some(format) = format else {
-            let known = TextureFormat::ALL.map(TextureFormat::name).join(", ");
+            let known = TextureFormat::OF_MAPS.map(TextureFormat::name).join(", ");
             return Err(mismatch(format!("one of {known}"), format_name(internal)));
         };
         if base != 0 {
@@ -163,7 +219,7 @@ impl Texture {
         if red.cast_unsigned() != glow::RED {
             return Err(mismatch("GL_TEXTURE_SWIZZLE_R GL_RED".to_owned(), format!("{red:#06x}")));
         }
-        Ok(Self { gl: gl.clone(), name, format, size, levels: 1, ours: false })
+        Ok(Self { gl: gl.clone(), name, format, size, levels: 1, layers: None, ours: false })
     }
 
     /// Replaces level 0.
@@ -232,8 +288,8 @@ impl Texture {
         // SAFETY: the context is current, and both levels exist.
         unsafe {
             let glow = self.gl.glow();
-            glow.tex_parameter_i32(glow::TEXTURE_2D, glow::TEXTURE_BASE_LEVEL, base.cast_signed());
-            glow.tex_parameter_i32(glow::TEXTURE_2D, glow::TEXTURE_MAX_LEVEL, last.cast_signed());
+            glow.tex_parameter_i32(self.target(), glow::TEXTURE_BASE_LEVEL, base.cast_signed());
+            glow.tex_parameter_i32(self.target(), glow::TEXTURE_MAX_LEVEL, last.cast_signed());
         }
     }
 
@@ -242,12 +298,54 @@ impl Texture {
         // SAFETY: the context is current while the handle lives.
         unsafe {
             self.gl.glow().active_texture(glow::TEXTURE0 + unit);
-            self.gl.glow().bind_texture(glow::TEXTURE_2D, Some(self.name));
+            self.gl.glow().bind_texture(self.target(), Some(self.name));
         }
     }
 
+    /// Attaches `level`, each layer apart, to the bound framebuffer.
+    ///
+    /// # Safety
+    /// A framebuffer of ours is bound.
+    pub(super) unsafe fn attach(&self, attachments: &mut impl Iterator<Item = u32>, level: u32) {
+        let (glow, name, level) = (self.gl.glow(), Some(self.name), level.cast_signed());
+        let layers = self.layers.map_or(vec![None], |layers| (0..layers.cast_signed()).map(Some).collect());
+        for (layer, attachment) in layers.into_iter().zip(attachments) {
+            // SAFETY: as the caller vouches; level and layer exist.
+            unsafe {
+                match layer {
+                    None => glow.framebuffer_texture_2d(
+                        glow::FRAMEBUFFER,
+                        attachment,
+                        glow::TEXTURE_2D,
+                        name,
+                        level,
+                    ),
+                    Some(layer) => {
+                        glow.framebuffer_texture_layer(glow::FRAMEBUFFER, attachment, name, level, layer);
+                    }
+                }
+            }
+        }
+    }
+
+    /// GL_TEXTURE_2D or GL_TEXTURE_2D_ARRAY.
+    pub(super) fn target(&self) -> u32 {
+        if self.layers.is_some() { glow::TEXTURE_2D_ARRAY } else { glow::TEXTURE_2D }
+    }
+
+    /// Layers of an array.
+    pub(super) fn layers(&self) -> Option<u32> {
+        self.layers
+    }
+
+    /// The type of the sampler that reads it.
     pub(super) fn sampler_kind(&self) -> u32 {
-        self.format.sampler_kind()
+        match (self.format.is_float(), self.layers) {
+            (true, None) => glow::SAMPLER_2D,
+            (true, Some(_)) => glow::SAMPLER_2D_ARRAY,
+            (false, None) => glow::UNSIGNED_INT_SAMPLER_2D,
+            (false, Some(_)) => glow::UNSIGNED_INT_SAMPLER_2D_ARRAY,
+        }
     }
 
     pub(crate) fn format(&self) -> TextureFormat {
@@ -291,7 +389,6 @@ fn format_name(internal: u32) -> String {
         glow::R8 => "GL_R8",
         glow::R16 => "GL_R16",
         glow::R16F => "GL_R16F",
-        glow::R16UI => "GL_R16UI",
         glow::R32I => "GL_R32I",
         glow::RGBA8 => "GL_RGBA8",
         glow::RGBA16F => "GL_RGBA16F",

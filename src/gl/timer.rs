@@ -78,15 +78,15 @@ impl Timer {
         let _state = StateGuard::new(&self.gl);
         // SAFETY: the context is current while the handle lives; the query is ended below on every way out.
         unsafe {
-            if let Some(frame) = &self.llvmpipe_frame {
-                frame.clear();
+            if let Some(frame) = &mut self.llvmpipe_frame {
+                frame.clear(&[0]);
             }
             glow.finish();
             self.gl.check("preparing a time query")?;
             glow.begin_query(glow::TIME_ELAPSED, self.query);
             self.gl.check("beginning a time query; one of the host's may be running")?;
-            if let Some(frame) = &self.llvmpipe_frame {
-                frame.clear();
+            if let Some(frame) = &mut self.llvmpipe_frame {
+                frame.clear(&[0]);
                 glow.finish();
             }
         }

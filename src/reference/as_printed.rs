@@ -57,7 +57,7 @@ pub fn radius(density: &Image<u32>, search: Search, samples: SatSamples, faults:
         };
         match search.order {
             Order::Forward => (1..=search.max_radius).find(|&radius| holds_enough(radius)),
-            Order::Binary => binary_search(search.max_radius, holds_enough),
+            Order::Binary | Order::Bracketed => binary_search(search.max_radius, holds_enough),
         }
     })
 }

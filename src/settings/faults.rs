@@ -1,6 +1,6 @@
 //! The faults of the thesis's printed listings, which can be switched on to measure what they spoil.
 
-use super::{Edges, Method, SatSamples, Settings, Split};
+use super::{Edges, Method, SatBuild, SatSamples, Settings, Split};
 
 /// Faults of the thesis's printed listings, each of which can be switched on (see
 /// [`structure`](crate::structure#as-printed) for what they do).
@@ -60,14 +60,15 @@ impl Settings {
     #[must_use]
     pub fn reaching_faults(&self) -> Faults {
         let in_table = self.method == Method::SummedAreaTable;
+        let in_doubling = in_table && self.sat_build == SatBuild::Doubling;
         let faults = self.faults;
         Faults {
             clamp_to_63: faults.clamp_to_63 && in_table,
             border_test: faults.border_test && in_table,
             corner_test: faults.corner_test && in_table,
-            swapped_axes: faults.swapped_axes && in_table,
+            swapped_axes: faults.swapped_axes && in_doubling,
             // The listing for 2 samples is right; its extension to more is not.
-            sample_stride: faults.sample_stride && in_table && self.sat_samples > SatSamples::Two,
+            sample_stride: faults.sample_stride && in_doubling && self.sat_samples > SatSamples::Two,
             forgotten_strip: faults.forgotten_strip
                 && matches!(self.method, Method::Pyramid | Method::AveragedMipmap)
                 && self.split == Split::Odd,

@@ -51,6 +51,9 @@ pub enum Order {
     Forward,
     /// Halving the range from 1 to MR: about log2 MR counts, whatever the radius.
     Binary,
+    /// Halving the few radii that are left when those of a block of pixels around are bounded first: about two counts,
+    /// whatever the radius and MR. For the summed-area table.
+    Bracketed,
 }
 
 /// How photons in a box are counted: the thesis's solutions.
@@ -107,6 +110,17 @@ pub enum Matching {
     Modulo,
     /// From the lowest set bit of the corner and the highest of the extent, without a loop: its future work.
     Bits,
+}
+
+/// How a summed-area table is built.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+pub enum SatBuild {
+    /// By recursive doubling: each pass adds samples ever further away (3.4.1, 4.2).
+    Doubling,
+    /// By a scan of tiles, groups of tiles and tiles again: 9 passes whose work does not grow with the side.
+    Scan,
 }
 
 /// Samples that a doubling pass adds, s; a table of side w takes ⌈log_s w⌉ passes a direction (thesis 4.2).
@@ -236,7 +250,9 @@ pub struct Settings {
     pub split: Split,
     /// How the pyramid and the averaged mipmap match an area with a level.
     pub matching: Matching,
-    /// Samples a pass when the summed-area table is built.
+    /// How the summed-area table is built.
+    pub sat_build: SatBuild,
+    /// Samples a pass when the summed-area table is built by doubling.
     pub sat_samples: SatSamples,
     /// The number in which sums are kept; the averaged mipmap is always f32.
     pub storage: Storage,
@@ -252,13 +268,14 @@ pub struct Settings {
 }
 
 impl Default for Settings {
-    /// The summed-area table in u32 with a binary search: exact, for n = 25 and MR = 32.
+    /// The summed-area table in u32, built by a scan, with a bracketed search: exact, for n = 25 and MR = 32.
     fn default() -> Self {
         Self {
-            search: Search { min_photons: 25, max_radius: 32, edges: Edges::Scale, order: Order::Binary },
+            search: Search { min_photons: 25, max_radius: 32, edges: Edges::Scale, order: Order::Bracketed },
             method: Method::SummedAreaTable,
             split: Split::Larger,
             matching: Matching::Bits,
+            sat_build: SatBuild::Scan,
             sat_samples: SatSamples::Four,
             storage: Storage::U32,
             variation: None,
@@ -273,7 +290,14 @@ impl Settings {
     /// The thesis's fastest: a summed-area table in f32, 4 samples a pass, MR = 32 (Figure 5.1), n = 25 (Figure 3.2).
     #[must_use]
     pub fn thesis() -> Self {
-        Self { matching: Matching::Modulo, storage: Storage::F32, ..Self::default() }
+        let usual = Self::default();
+        Self {
+            search: Search { order: Order::Binary, ..usual.search },
+            matching: Matching::Modulo,
+            sat_build: SatBuild::Doubling,
+            storage: Storage::F32,
+            ..usual
+        }
     }
 
     /// Checks every range, and that the variation fits.
@@ -307,6 +331,33 @@ impl Settings {
                     "the naive mipmap goes up to {NAIVE_MAX_RADIUS}: the area of its last block must fit 32 bits"
                 ),
             });
+        }
+        if self.sat_build == SatBuild::Scan
+            && self.storage == Storage::F32
+            && self.method == Method::SummedAreaTable
+        {
+            return Err(Error::Setting {
+                name: "sat_build",
+                value: "scan".to_owned(),
+                reason: "a scan adds integers; keep the sums in u32, or build by doubling".to_owned(),
+            });
+        }
+        if self.search.order == Order::Bracketed {
+            let refuse = |reason: &str| {
+                Err(Error::Setting {
+                    name: "search",
+                    value: "bracketed".to_owned(),
+                    reason: reason.to_owned(),
+                })
+            };
+            if self.method != Method::SummedAreaTable {
+                return refuse(
+                    "it counts boxes of many shapes, which only the summed-area table does at one price",
+                );
+            }
+            if self.faults != Faults::NONE {
+                return refuse("its bounds hold for the listings without their faults");
+            }
         }
         if let Some(variation) = self.variation {
             let refuse = |reason: String| {

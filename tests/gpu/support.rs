@@ -3,7 +3,9 @@
 use glam::UVec2;
 use varikernel::context::{self, Candidate, DeviceChoice};
 use varikernel::measure::Difference;
-use varikernel::settings::{Edges, Matching, Method, Order, SatSamples, Search, Settings, Split, Storage};
+use varikernel::settings::{
+    Edges, Matching, Method, Order, SatBuild, SatSamples, Search, Settings, Split, Storage,
+};
 use varikernel::{CountBounds, DensityMap, Gl, Image, RadiusPipeline, reference};
 
 /// The first EGL device that works, or the reason why none does.
@@ -81,8 +83,13 @@ pub(crate) fn exact_variants(search: Search) -> Vec<Settings> {
             ] {
                 variants.push(Settings { method: Method::Pyramid, split, matching, ..base });
             }
-            for sat_samples in SatSamples::ALL {
-                variants.push(Settings { method: Method::SummedAreaTable, sat_samples, ..base });
+            let table = Settings { method: Method::SummedAreaTable, sat_build: SatBuild::Doubling, ..base };
+            variants.extend(SatSamples::ALL.map(|sat_samples| Settings { sat_samples, ..table }));
+            let bracketed = Settings { search: Search { order: Order::Bracketed, ..search }, ..table };
+            variants.push(bracketed);
+            if storage == Storage::U32 {
+                variants.push(Settings { sat_build: SatBuild::Scan, ..table });
+                variants.push(Settings { sat_build: SatBuild::Scan, ..bracketed });
             }
         }
     }

@@ -255,6 +255,7 @@ fn order(case: &Case) -> &'static str {
     match (case.search, case.stage) {
         (Some(Order::Forward), _) => "forward",
         (Some(Order::Binary), _) => "binary",
+        (Some(Order::Bracketed), _) => "bracketed",
         (None, Stage::Copy | Stage::Probe | Stage::Build) => "",
         (None, Stage::Search | Stage::Frame) => "its own",
     }

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::settings::{BenchSettings, MapInfo};
 use crate::measure::Unit;
-use crate::settings::{Edges, Method, Order, SatSamples, Settings};
+use crate::settings::{Edges, Method, Order, SatBuild, SatSamples, Settings};
 
 /// What is timed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -44,7 +44,7 @@ pub struct Case {
     /// What is timed.
     pub stage: Stage,
     /// The method and, where it counts, how its structure is built: `brute-force`, `naive-mipmap`,
-    /// `averaged-mipmap`, `pyramid`, `sat` (search), `sat-doubling-4` (build and frame), `copy`, `probe`.
+    /// `averaged-mipmap`, `pyramid`, `sat` (search), `sat-doubling-4` or `sat-scan` (build and frame), `copy`, `probe`.
     pub variant: String,
     /// The map's name.
     pub map: String,
@@ -52,7 +52,7 @@ pub struct Case {
     pub size: [u32; 2],
     /// The method.
     pub method: Option<Method>,
-    /// Samples a pass in which the summed-area table is built.
+    /// Samples a pass in which the summed-area table is built, if it is built by doubling.
     pub sat_samples: Option<SatSamples>,
     /// The order of the search.
     pub search: Option<Order>,
@@ -87,12 +87,15 @@ impl Case {
     fn of(stage: Stage, settings: &Settings, map: &MapInfo) -> Self {
         let Settings { search, method, .. } = *settings;
         let is_table = method == Method::SummedAreaTable;
-        let sat_samples = (is_table && stage != Stage::Search).then_some(settings.sat_samples);
+        let builds = is_table && stage != Stage::Search;
+        let sat_samples =
+            (builds && settings.sat_build == SatBuild::Doubling).then_some(settings.sat_samples);
         let variant = match (method, sat_samples) {
             (Method::BruteForce, _) => "brute-force".to_owned(),
             (Method::NaiveMipmap, _) => "naive-mipmap".to_owned(),
             (Method::AveragedMipmap, _) => "averaged-mipmap".to_owned(),
             (Method::Pyramid, _) => "pyramid".to_owned(),
+            (Method::SummedAreaTable, None) if builds => "sat-scan".to_owned(),
             (Method::SummedAreaTable, None) => "sat".to_owned(),
             (Method::SummedAreaTable, Some(samples)) => format!("sat-doubling-{}", samples.count()),
         };
@@ -134,6 +137,7 @@ pub(super) fn order_name(order: Order) -> &'static str {
     match order {
         Order::Forward => "forward",
         Order::Binary => "binary",
+        Order::Bracketed => "bracketed",
     }
 }
 
@@ -185,10 +189,11 @@ mod tests {
         let count = |settings: &BenchSettings, stage| {
             cases(settings, &map).iter().filter(|(case, _)| case.stage == stage).count()
         };
-        // Pyramid and two tables are built; pyramid and table are searched; brute force is a frame as well. Two orders.
-        assert_eq!([Stage::Build, Stage::Search, Stage::Frame].map(|s| count(&settings, s)), [3, 4, 8]);
+        // Pyramid and three tables are built; pyramid and table are searched; brute force is a frame as well. Two
+        // orders, and a third for the table.
+        assert_eq!([Stage::Build, Stage::Search, Stage::Frame].map(|s| count(&settings, s)), [4, 5, 13]);
         settings.edges = vec![Edges::Zero, Edges::Scale];
-        assert_eq!([Stage::Build, Stage::Search, Stage::Frame].map(|s| count(&settings, s)), [3, 8, 16]);
+        assert_eq!([Stage::Build, Stage::Search, Stage::Frame].map(|s| count(&settings, s)), [4, 10, 26]);
         // The naive mipmap has one search of its own.
         settings.methods = vec![Method::NaiveMipmap];
         assert_eq!([Stage::Build, Stage::Search, Stage::Frame].map(|s| count(&settings, s)), [1, 2, 2]);

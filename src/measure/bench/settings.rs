@@ -7,7 +7,7 @@ use glam::UVec2;
 use serde::{Deserialize, Serialize};
 
 use crate::image::Image;
-use crate::settings::{Edges, Method, Order, SatSamples, Search, Settings};
+use crate::settings::{Edges, Method, Order, SatBuild, SatSamples, Search, Settings};
 
 /// How often a case is repeated.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -39,7 +39,9 @@ impl Protocol {
 pub struct BenchSettings {
     /// Methods.
     pub methods: Vec<Method>,
-    /// Samples a pass of the summed-area table.
+    /// Builds of the summed-area table.
+    pub sat_builds: Vec<SatBuild>,
+    /// Samples a pass of a table that is built by doubling.
     pub sat_samples: Vec<SatSamples>,
     /// Orders of the search.
     pub searches: Vec<Order>,
@@ -62,8 +64,9 @@ impl BenchSettings {
         let base = Settings::default();
         Self {
             methods: Method::ALL.into_iter().filter(|method| method.is_exact()).collect(),
+            sat_builds: vec![SatBuild::Doubling, SatBuild::Scan],
             sat_samples: vec![SatSamples::Two, SatSamples::Four],
-            searches: vec![Order::Forward, Order::Binary],
+            searches: vec![Order::Forward, Order::Binary, Order::Bracketed],
             min_photons: vec![base.search.min_photons],
             max_radius: vec![base.search.max_radius],
             edges: vec![base.search.edges],
@@ -77,13 +80,14 @@ impl BenchSettings {
         let mut pipelines: Vec<Settings> = Vec::new();
         for &method in &self.methods {
             for search in self.questions() {
-                for sat_samples in self.samples_of(method) {
-                    let mut settings = Settings { search, method, sat_samples, ..self.base };
+                for (sat_build, sat_samples) in self.builds_of(method) {
+                    let mut settings = Settings { search, method, sat_build, sat_samples, ..self.base };
                     if method == Method::NaiveMipmap {
                         // It has a search of its own, for which the order means nothing.
                         settings.search.order = self.base.search.order;
                     }
-                    if !pipelines.contains(&settings) {
+                    let is_possible = search.order != Order::Bracketed || method == Method::SummedAreaTable;
+                    if is_possible && !pipelines.contains(&settings) {
                         pipelines.push(settings);
                     }
                 }
@@ -92,11 +96,18 @@ impl BenchSettings {
         pipelines
     }
 
-    fn samples_of(&self, method: Method) -> Vec<SatSamples> {
-        match method {
-            Method::SummedAreaTable => self.sat_samples.clone(),
-            _ => vec![self.base.sat_samples],
+    fn builds_of(&self, method: Method) -> Vec<(SatBuild, SatSamples)> {
+        if method != Method::SummedAreaTable {
+            return vec![(self.base.sat_build, self.base.sat_samples)];
         }
+        let samples_of = |build: &SatBuild| match build {
+            SatBuild::Doubling => self.sat_samples.clone(),
+            SatBuild::Scan => vec![self.base.sat_samples],
+        };
+        self.sat_builds
+            .iter()
+            .flat_map(|build| samples_of(build).into_iter().map(|samples| (*build, samples)))
+            .collect()
     }
 
     fn questions(&self) -> Vec<Search> {

@@ -11,7 +11,7 @@ use crate::measure::thesis::evidence::OrderPoint;
 use crate::measure::thesis::quantity::{Measured, Measurements, Quantity, Timing};
 use crate::measure::thesis::tables;
 use crate::reference;
-use crate::settings::{Edges, Method, Order, SatSamples, Settings};
+use crate::settings::{Edges, Method, Order, SatBuild, SatSamples, Settings};
 use crate::synth::{self, Kind};
 
 /// The seed of every map.
@@ -52,6 +52,7 @@ impl Part {
     pub(super) fn settings(&self, protocol: Protocol) -> BenchSettings {
         BenchSettings {
             methods: self.methods.clone(),
+            sat_builds: vec![SatBuild::Doubling],
             sat_samples: self.sat_samples.clone(),
             searches: self.searches.clone(),
             min_photons: vec![SEARCH.min_photons],
@@ -224,6 +225,7 @@ pub fn other_maps(run: &RunFile) -> Vec<OtherMap> {
             let order = match run.case.search {
                 Some(Order::Forward) => " forward",
                 Some(Order::Binary) => " binary",
+                Some(Order::Bracketed) => " bracketed",
                 None => "",
             };
             let name = format!("{} {}{order}", run.case.stage.name(), run.case.variant);

@@ -1,0 +1,119 @@
+//! The search: density map and structure in, radius map out (thesis 3.5).
+
+mod bracketed;
+mod stepwise;
+
+use std::ops::RangeInclusive;
+
+use glam::UVec2;
+
+use crate::error::Result;
+use crate::exactness;
+use crate::gl::{Gl, Pass, Program, ShaderSource, TextureFormat, glsl};
+use crate::maps::{DensityMap, RadiusMap};
+use crate::settings::{Edges, Method, Order, Settings};
+use crate::structure::{self, Structure};
+
+const SEARCH: &str = "radius search";
+
+/// The search of one method and the map that it fills.
+#[derive(Debug)]
+pub(crate) struct RadiusSearch {
+    order: Ordered,
+    radii: RadiusMap,
+}
+
+#[derive(Debug)]
+enum Ordered {
+    Stepwise(stepwise::Stepwise),
+    Bracketed(bracketed::Bracketed),
+}
+
+impl RadiusSearch {
+    pub(crate) fn new(
+        gl: &Gl,
+        size: UVec2,
+        density: TextureFormat,
+        settings: &Settings,
+        passes: Vec<RangeInclusive<u32>>,
+    ) -> Result<Self> {
+        let order = match settings.search.order {
+            Order::Forward | Order::Binary => {
+                Ordered::Stepwise(stepwise::Stepwise::new(gl, size, density, settings, passes)?)
+            }
+            Order::Bracketed => Ordered::Bracketed(bracketed::Bracketed::new(gl, size, density, settings)?),
+        };
+        Ok(Self { order, radii: RadiusMap::new(gl, size, settings.limited_mask)? })
+    }
+
+    /// Searches every pixel.
+    pub(crate) fn estimate(&mut self, density: &DensityMap, structure: &Structure) -> Result<()> {
+        match &mut self.order {
+            Ordered::Stepwise(stepwise) => stepwise.estimate(density, structure, &mut self.radii),
+            Ordered::Bracketed(bracketed) => bracketed.estimate(density, structure, &mut self.radii),
+        }
+    }
+
+    pub(crate) fn radii(&self) -> &RadiusMap {
+        &self.radii
+    }
+}
+
+/// What every pass over the pixels reads and sets.
+fn of_pixels<'a>(
+    settings: &Settings,
+    program: &'a Program,
+    density: &'a DensityMap,
+    structure: &'a Structure,
+) -> Pass<'a> {
+    let pass = Pass::new(SEARCH, program)
+        .set("map_size", density.size().as_ivec2())
+        .set("min_photons", settings.search.min_photons)
+        .set("max_radius", settings.search.max_radius.cast_signed());
+    structure.read_by(pass, density)
+}
+
+/// Whether a search goes on where an earlier pass found nothing.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Continued {
+    No,
+    Yes,
+}
+
+/// Every shader that a search of these settings may compile.
+pub(crate) fn search_sources(density: TextureFormat, settings: &Settings) -> Vec<ShaderSource> {
+    let mut sources = vec![search_source(density, settings, Continued::No)];
+    match settings.search.order {
+        Order::Forward if settings.method != Method::NaiveMipmap => {
+            sources.push(search_source(density, settings, Continued::Yes));
+        }
+        Order::Forward | Order::Binary => {}
+        Order::Bracketed => sources.extend(bracketed::bracket_sources(density, settings)),
+    }
+    sources
+}
+
+/// One search and one counter.
+fn search_source(density: TextureFormat, settings: &Settings, continued: Continued) -> ShaderSource {
+    let source = search_defines(ShaderSource::new(SEARCH), settings)
+        .define_if(settings.faults.float_ratio, "FAULT_FLOAT_RATIO")
+        .define_if(settings.limited_mask, "LIMITED_MASK")
+        .define_if(continued == Continued::Yes, "CONTINUED");
+    let source = match settings.search.order {
+        Order::Forward => source.define("ORDER_FORWARD", 1_u32),
+        Order::Binary => source,
+        Order::Bracketed => source.define("ORDER_BRACKETED", 1_u32),
+    };
+    let source = source.file(glsl!("common/enough.glsl"));
+    structure::counter(source, density, settings).file(match settings.method {
+        Method::NaiveMipmap => glsl!("naive_mipmap.frag"),
+        _ => glsl!("radius.frag"),
+    })
+}
+
+/// What the edge rule of `enough.glsl` depends on.
+fn search_defines(source: ShaderSource, settings: &Settings) -> ShaderSource {
+    source
+        .define_if(settings.search.edges == Edges::Zero, "EDGES_ZERO")
+        .define_if(exactness::needs_wide_products(settings), "WIDE_PRODUCTS")
+}

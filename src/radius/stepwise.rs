@@ -1,0 +1,77 @@
+//! The thesis's searches (3.5): radius by radius, or halving the range; every pixel by itself.
+
+use std::ops::RangeInclusive;
+
+use glam::UVec2;
+
+use super::{Continued, of_pixels, search_source};
+use crate::error::Result;
+use crate::gl::{Gl, Pass, Program, TextureFormat};
+use crate::maps::{DensityMap, RadiusMap};
+use crate::settings::{Method, Order, Settings};
+use crate::structure::Structure;
+
+/// One program, or two where a renderer's limits call for several passes.
+#[derive(Debug)]
+pub(super) struct Stepwise {
+    program: Program,
+    /// The radii that each pass tries.
+    passes: Vec<RangeInclusive<u32>>,
+    /// What the passes after the first need: a program that goes on, and a map that takes turns.
+    continued: Option<(Program, RadiusMap)>,
+    settings: Settings,
+}
+
+impl Stepwise {
+    pub(super) fn new(
+        gl: &Gl,
+        size: UVec2,
+        density: TextureFormat,
+        settings: &Settings,
+        passes: Vec<RangeInclusive<u32>>,
+    ) -> Result<Self> {
+        let continued = if passes.len() > 1 {
+            let source = search_source(density, settings, Continued::Yes);
+            Some((Program::new(gl, &source)?, RadiusMap::new(gl, size, settings.limited_mask)?))
+        } else {
+            None
+        };
+        let program = Program::new(gl, &search_source(density, settings, Continued::No))?;
+        Ok(Self { program, passes, continued, settings: *settings })
+    }
+
+    pub(super) fn estimate(
+        &mut self,
+        density: &DensityMap,
+        structure: &Structure,
+        found: &mut RadiusMap,
+    ) -> Result<()> {
+        let settings = &self.settings;
+        let trying = |program, radii| of_radii(settings, program, radii, density, structure);
+        trying(&self.program, &self.passes[0]).fill(found.target())?;
+        if let Some((program, spare)) = &mut self.continued {
+            for radii in &self.passes[1..] {
+                let pass = of_radii(settings, program, radii, density, structure);
+                pass.read("found_before", found.as_texture()).fill(spare.target())?;
+                std::mem::swap(found, spare);
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A pass that tries `radii`.
+fn of_radii<'a>(
+    settings: &Settings,
+    program: &'a Program,
+    radii: &RangeInclusive<u32>,
+    density: &'a DensityMap,
+    structure: &'a Structure,
+) -> Pass<'a> {
+    let pass = of_pixels(settings, program, density, structure);
+    if settings.search.order == Order::Forward && settings.method != Method::NaiveMipmap {
+        pass.set("first_radius", radii.start().cast_signed()).set("last_radius", radii.end().cast_signed())
+    } else {
+        pass
+    }
+}

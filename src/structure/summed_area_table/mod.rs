@@ -1,0 +1,94 @@
+//! Summed-area table (thesis 3.4, 4.2): entry (x, y) is the sum of all counts up to and including column x, row y.
+//!
+//! Two builds: [`doubling`], the thesis's, and [`scan`], ours.
+//!
+//! - A box: 4 fetches, fewer at the map's lower left; ⌈log2 MR⌉ boxes for a binary search, R for a forward one, about
+//!   two for a bracketed one.
+//! - Memory: the table (4 bytes an entry, 2 in u16) beside the density map, and what its build needs.
+//! - Exact: u32 and u16 while each box holds less than 2^32 or 2^16, even where the table wraps; f32 while the total
+//!   is at most 2^24.
+//! - Against the thesis: u32 is the default, which its drivers did not support; reads outside the table, which GLSL
+//!   leaves undefined, are tested for.
+//! - Variation (6.4.5): [`Variation::UnconditionalFetches`] takes 4 fetches everywhere.
+//!
+//! The listings' faults are described in the module above, since all methods have some.
+
+mod doubling;
+mod scan;
+
+use glam::UVec2;
+
+use crate::error::Result;
+use crate::exactness::Plan;
+use crate::gl::{Gl, Pass, ShaderSource, Target, Texture, TextureFormat, glsl};
+use crate::maps::DensityMap;
+use crate::settings::{SatBuild, Settings, Variation};
+
+/// A table and what fills it.
+#[derive(Debug)]
+pub(crate) struct SummedAreaTable {
+    table: Target,
+    build: Build,
+    settings: Settings,
+}
+
+#[derive(Debug)]
+enum Build {
+    Doubling(doubling::Doubling),
+    Scan(Box<scan::Scan>),
+}
+
+impl SummedAreaTable {
+    pub(super) fn new(gl: &Gl, size: UVec2, density: TextureFormat, settings: &Settings) -> Result<Self> {
+        let target = || Target::single(gl, Texture::new(gl, super::format(settings), size, 1)?);
+        Ok(Self {
+            table: target()?,
+            build: match settings.sat_build {
+                SatBuild::Doubling => {
+                    Build::Doubling(doubling::Doubling::new(gl, target()?, density, settings)?)
+                }
+                SatBuild::Scan => Build::Scan(Box::new(scan::Scan::new(gl, size, density, settings)?)),
+            },
+            settings: *settings,
+        })
+    }
+
+    pub(super) fn build(&mut self, density: &DensityMap, plan: Plan) -> Result<()> {
+        match &mut self.build {
+            Build::Doubling(doubling) => doubling.build(density, plan, &mut self.table),
+            Build::Scan(scan) => scan.build(density, plan, &mut self.table),
+        }
+    }
+
+    pub(super) fn read_by<'a>(&'a self, pass: Pass<'a>) -> Pass<'a> {
+        let pass = pass.read("table", self.table.texture());
+        if self.settings.faults.in_table_sampling() {
+            pass.set("table_size", self.table.size().as_ivec2())
+        } else {
+            pass
+        }
+    }
+}
+
+pub(super) fn build_sources(density: TextureFormat, settings: &Settings) -> Vec<ShaderSource> {
+    match settings.sat_build {
+        SatBuild::Doubling => doubling::sources(density, settings),
+        SatBuild::Scan => scan::sources(density, settings),
+    }
+}
+
+pub(super) fn counter(source: ShaderSource, settings: &Settings) -> ShaderSource {
+    let faults = settings.faults;
+    let source = source
+        .define_if(faults.in_table_sampling(), "BOX_UNCLIPPED")
+        .define_if(faults.clamp_to_63, "FAULT_CLAMP_TO_63")
+        .define_if(faults.border_test, "FAULT_BORDER_TEST")
+        .define_if(faults.corner_test, "FAULT_CORNER_TEST");
+    super::number(source, settings).file(if faults.in_table_sampling() {
+        glsl!("count/summed_area_table_as_printed.glsl")
+    } else if settings.variation == Some(Variation::UnconditionalFetches) {
+        glsl!("count/summed_area_table_unconditional_fetches.glsl")
+    } else {
+        glsl!("count/summed_area_table.glsl")
+    })
+}

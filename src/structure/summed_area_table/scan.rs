@@ -1,0 +1,196 @@
+//! A table built by a work-efficient scan: each count is read twice and each entry written twice, whatever the size.
+//!
+//! A fragment works on a tile of 4 x 8 texels and writes through several draw buffers, since one that writes a single
+//! entry has little to share with its neighbours:
+//!
+//! 1. the sums of each tile's 8 rows and 4 columns;
+//! 2. to 4. a scan of these along rows (what lies left of each tile), then along columns (what lies left of and below
+//!    it): sums of groups of 16, the groups added up, then runs of 8 with what lies before them;
+//! 5. the entries of each tile, 8 layers of GL_RGBA32UI;
+//! 6. the entries in one plain texture, which every search reads.
+//!
+//! - Passes: 9 at any size. Fetches per texel: 1 + 1 of the map, about 1/3 in between, 1 to unpack.
+//! - Memory: the table, its packed form of the same size, and 3/8 + 3/8 of that for the sums in between.
+//! - Exact: as any table in u32; sums wrap alike in every order.
+//!
+//! After Harris, Sengupta and Owens, "Parallel Prefix Sum (Scan) with CUDA" (GPU Gems 3, chapter 39), with draw buffers
+//! in the place of shared memory.
+
+use glam::UVec2;
+
+use crate::error::Result;
+use crate::exactness::Plan;
+use crate::gl::{Gl, Pass, Program, ShaderSource, Target, Texture, TextureFormat, glsl};
+use crate::maps::DensityMap;
+use crate::settings::Settings;
+use crate::structure;
+
+/// Texels of a tile.
+const TILE: UVec2 = UVec2::new(4, 8);
+/// Elements of a scan that a fragment sums before the groups are added up.
+const GROUP: u32 = 16;
+/// Elements, or rows, that a fragment writes: one for each draw buffer.
+const RUN: u32 = 8;
+
+const TILE_SUMS: &str = "sat tile sums";
+const GROUP_SUMS: &str = "sat group sums";
+const GROUPS_BEFORE: &str = "sat groups before";
+const ELEMENTS_BEFORE: &str = "sat elements before";
+const TILES: &str = "sat tiles";
+const UNPACK: &str = "sat unpack";
+
+/// The passes that fill a table, and what lies between them.
+#[derive(Debug)]
+pub(super) struct Scan {
+    tile_sums: Stage,
+    rows: Direction,
+    columns: Direction,
+    tiles: Stage,
+    unpack: Program,
+}
+
+impl Scan {
+    pub(super) fn new(gl: &Gl, size: UVec2, density: TextureFormat, settings: &Settings) -> Result<Self> {
+        let grid = (size + TILE - 1) / TILE;
+        Ok(Self {
+            tile_sums: Stage::new(gl, &tile_sums_source(density, settings), grid, Some(3))?,
+            rows: Direction::new(gl, Axis::Rows, grid)?,
+            columns: Direction::new(gl, Axis::Columns, grid)?,
+            tiles: Stage::new(gl, &tiles_source(density, settings), grid, Some(RUN))?,
+            unpack: Program::new(gl, &unpack_source())?,
+        })
+    }
+
+    /// Fills `table` from a density map.
+    pub(super) fn build(&mut self, density: &DensityMap, plan: Plan, table: &mut Target) -> Result<()> {
+        let Self { tile_sums, rows, columns, tiles, unpack } = self;
+        of_map(Pass::new(TILE_SUMS, &tile_sums.program), density, plan).fill(&mut tile_sums.target)?;
+        let sums = tile_sums.target.texture();
+        rows.scan(&[("tile_sums", sums)])?;
+        let rows_before = rows.elements_before.target.texture();
+        columns.scan(&[("tile_sums", sums), ("rows_before", rows_before)])?;
+        of_map(Pass::new(TILES, &tiles.program), density, plan)
+            .read("rows_before", rows_before)
+            .read("columns_before", columns.elements_before.target.texture())
+            .fill(&mut tiles.target)?;
+        Pass::new(UNPACK, unpack).read("tiles", tiles.target.texture()).fill(table)
+    }
+}
+
+/// Adds what a pass over the map's counts needs.
+fn of_map<'a>(pass: Pass<'a>, density: &'a DensityMap, plan: Plan) -> Pass<'a> {
+    pass.read("density", density.texture())
+        .set("map_size", density.size().as_ivec2())
+        .set("count_limit", plan.count_limit)
+}
+
+/// A program and the target that it fills.
+#[derive(Debug)]
+struct Stage {
+    program: Program,
+    target: Target,
+}
+
+impl Stage {
+    fn new(gl: &Gl, source: &ShaderSource, size: UVec2, layers: Option<u32>) -> Result<Self> {
+        let format = TextureFormat::Rgba32Uint;
+        let texture = match layers {
+            Some(layers) => Texture::layered(gl, format, size, layers)?,
+            None => Texture::new(gl, format, size, 1)?,
+        };
+        Ok(Self { program: Program::new(gl, source)?, target: Target::single(gl, texture)? })
+    }
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Axis {
+    Rows,
+    Columns,
+}
+
+/// The scan of what tiles hold along one axis: four sums an element.
+#[derive(Debug)]
+struct Direction {
+    elements: u32,
+    group_sums: Stage,
+    groups_before: Stage,
+    elements_before: Stage,
+}
+
+impl Direction {
+    /// For a `grid` of tiles.
+    fn new(gl: &Gl, axis: Axis, grid: UVec2) -> Result<Self> {
+        let (elements, lines) = match axis {
+            // Two elements, of four rows each, are in every tile.
+            Axis::Rows => (grid.x, 2 * grid.y),
+            Axis::Columns => (grid.y, grid.x),
+        };
+        let place = |along: u32| match axis {
+            Axis::Rows => UVec2::new(along, lines),
+            Axis::Columns => UVec2::new(lines, along),
+        };
+        let [group_sums, groups_before, elements_before] = scan_sources(axis);
+        let groups = place(elements.div_ceil(GROUP));
+        Ok(Self {
+            elements,
+            group_sums: Stage::new(gl, &group_sums, groups, None)?,
+            groups_before: Stage::new(gl, &groups_before, groups, None)?,
+            elements_before: Stage::new(gl, &elements_before, place(elements.div_ceil(RUN)), Some(RUN))?,
+        })
+    }
+
+    /// Sums all elements before each, read from `inputs`.
+    fn scan(&mut self, inputs: &[(&'static str, &Texture)]) -> Result<()> {
+        let Self { elements, group_sums, groups_before, elements_before } = self;
+        let count = elements.cast_signed();
+        of_elements(Pass::new(GROUP_SUMS, &group_sums.program), inputs, count)
+            .fill(&mut group_sums.target)?;
+        Pass::new(GROUPS_BEFORE, &groups_before.program)
+            .read("group_sums", group_sums.target.texture())
+            .fill(&mut groups_before.target)?;
+        of_elements(Pass::new(ELEMENTS_BEFORE, &elements_before.program), inputs, count)
+            .read("groups_before", groups_before.target.texture())
+            .fill(&mut elements_before.target)
+    }
+}
+
+/// Adds what a pass over the elements needs.
+fn of_elements<'a>(pass: Pass<'a>, inputs: &[(&'static str, &'a Texture)], count: i32) -> Pass<'a> {
+    inputs.iter().fold(pass.set("elements", count), |pass, &(name, texture)| pass.read(name, texture))
+}
+
+/// The shaders in the order of the passes.
+pub(super) fn sources(density: TextureFormat, settings: &Settings) -> Vec<ShaderSource> {
+    let mut sources = vec![tile_sums_source(density, settings)];
+    sources.extend([Axis::Rows, Axis::Columns].into_iter().flat_map(scan_sources));
+    sources.extend([tiles_source(density, settings), unpack_source()]);
+    sources
+}
+
+fn tile_sums_source(density: TextureFormat, settings: &Settings) -> ShaderSource {
+    structure::density_access(ShaderSource::new(TILE_SUMS), density, settings)
+        .file(glsl!("build/scan/tile_sums.frag"))
+}
+
+fn scan_sources(axis: Axis) -> [ShaderSource; 3] {
+    let source = |label| {
+        ShaderSource::new(label).define("GROUP", GROUP).file(match axis {
+            Axis::Rows => glsl!("build/scan/along_rows.glsl"),
+            Axis::Columns => glsl!("build/scan/along_columns.glsl"),
+        })
+    };
+    [
+        source(GROUP_SUMS).file(glsl!("build/scan/group_sums.frag")),
+        source(GROUPS_BEFORE).file(glsl!("build/scan/groups_before.frag")),
+        source(ELEMENTS_BEFORE).file(glsl!("build/scan/elements_before.frag")),
+    ]
+}
+
+fn tiles_source(density: TextureFormat, settings: &Settings) -> ShaderSource {
+    structure::density_access(ShaderSource::new(TILES), density, settings)
+        .file(glsl!("build/scan/tiles.frag"))
+}
+
+fn unpack_source() -> ShaderSource {
+    ShaderSource::new(UNPACK).file(glsl!("build/scan/unpack.frag"))
+}
