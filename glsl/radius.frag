@@ -13,7 +13,7 @@ uniform int last_radius;
 uniform usampler2D found_before;
 #endif
 #ifdef ORDER_BRACKETED
-// The smallest and the largest radius that any pixel of a block of 2 x 2 can have.
+// The smallest and the largest radius that any pixel of a block can have.
 uniform usampler2D brackets;
 #endif
 
@@ -61,17 +61,22 @@ void main()
         }
     }
 #elif defined(ORDER_BRACKETED)
-    uint bracket = texelFetch(brackets, center >> 1, 0).r;
+    uint bracket = texelFetch(brackets, center >> WIDER_SIDE_LOG2, 0).r;
     int r = int(bracket & 0xFFFFu);
     int last = int(bracket >> 16);
+#if CLASS == CLASS_INNER
+    // At most two are left.
+    r = enough_within(center, r) ? r : last;
+#else
     while (r < last) {
-        int middle = (r + last) / 2;
+        int middle = (r + last) >> 1;
         if (enough_within(center, middle)) {
             last = middle;
         } else {
             r = middle + 1;
         }
     }
+#endif
     // A bracket reaches past MR where the mask asks whether MR was enough.
     bool found = r <= max_radius;
     r = min(r, max_radius);
@@ -81,7 +86,7 @@ void main()
     int last = max_radius;
     bool found = false;
     while (r < last) {
-        int middle = (r + last) / 2;
+        int middle = (r + last) >> 1;
         if (enough_within(center, middle)) {
             last = middle;
             found = true;

@@ -57,30 +57,37 @@ impl CountBounds {
         if total <= F32_MAX {
             return Self::total_at_most(total);
         }
-        let densest =
-            |counts: &Image<u32>| crate::reference::Table::new(counts).densest_box(search.max_radius);
+        let densest = |counts: &Image<u32>| {
+            crate::reference::Table::new(counts).densest_box(search.largest_counted_radius())
+        };
         let densest_box = densest(density);
         let densest_clamped_box = if densest_box <= U32_MAX {
             densest_box
         } else {
             densest(&density.map(|count| count.min(search.min_photons)))
         };
-        let Search { max_radius, min_photons, .. } = search;
-        Self { total, densest_box, densest_clamped_box, max_radius, min_photons }
+        Self {
+            total,
+            densest_box,
+            densest_clamped_box,
+            max_radius: search.largest_counted_radius(),
+            min_photons: search.min_photons,
+        }
     }
 
     /// The bound for any box that `settings` can ask for.
     fn box_of(&self, settings: &Settings) -> u64 {
         // The naive mipmap's last block is larger than a box of MR.
-        let holds = settings.search.max_radius <= self.max_radius && settings.method != Method::NaiveMipmap;
+        let holds = settings.search.largest_counted_radius() <= self.max_radius
+            && settings.method != Method::NaiveMipmap;
         if holds { self.densest_box.min(self.total) } else { self.total }
     }
 
     /// The same with each count clamped to n.
     fn clamped_box_of(&self, settings: &Settings) -> u64 {
-        let Search { max_radius, min_photons, .. } = settings.search;
-        let holds = max_radius <= self.max_radius
-            && min_photons <= self.min_photons
+        let search = settings.search;
+        let holds = search.largest_counted_radius() <= self.max_radius
+            && search.min_photons <= self.min_photons
             && settings.method != Method::NaiveMipmap;
         if holds { self.densest_clamped_box } else { u64::MAX }
     }
@@ -162,7 +169,7 @@ pub(crate) fn needs_wide_products(settings: &Settings) -> bool {
 
 /// The largest T that the search asks for, cut to the map where it is a sum's area that matters.
 fn largest_area(settings: &Settings, size: UVec2) -> u64 {
-    let radius = u64::from(settings.search.max_radius);
+    let radius = u64::from(settings.search.largest_counted_radius());
     let longest = match settings.method {
         // Blocks of side 2^l with 2^(l-1) < 2 MR.
         Method::NaiveMipmap => 4 * radius,

@@ -117,11 +117,12 @@ pub(crate) struct Pass<'a> {
     program: &'a Program,
     reads: Vec<(&'static str, &'a Texture)>,
     uniforms: Vec<(&'static str, Uniform)>,
+    vertices: u32,
 }
 
 impl<'a> Pass<'a> {
     pub(crate) fn new(label: &'a str, program: &'a Program) -> Self {
-        Self { label, program, reads: Vec::new(), uniforms: Vec::new() }
+        Self { label, program, reads: Vec::new(), uniforms: Vec::new(), vertices: 3 }
     }
 
     /// Binds `texture` to the sampler `name`.
@@ -134,6 +135,12 @@ impl<'a> Pass<'a> {
     /// Sets the uniform `name`.
     pub(crate) fn set(mut self, name: &'static str, value: impl Into<Uniform>) -> Self {
         self.uniforms.push((name, value.into()));
+        self
+    }
+
+    /// Draws `count` triangles that the program's vertex stage places by gl_VertexID, instead of the one.
+    pub(crate) fn triangles(mut self, count: u32) -> Self {
+        self.vertices = 3 * count;
         self
     }
 
@@ -199,7 +206,7 @@ impl<'a> Pass<'a> {
                 glow.bind_framebuffer(glow::DRAW_FRAMEBUFFER, Some(target.framebuffers[level as usize]));
                 glow.viewport(corner.x, corner.y, size.x, size.y);
                 glow.bind_vertex_array(Some(gl.vertex_array()));
-                glow.draw_arrays(glow::TRIANGLES, 0, 3);
+                glow.draw_arrays(glow::TRIANGLES, 0, self.vertices.cast_signed());
             }
             Ok(())
         })

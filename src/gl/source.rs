@@ -1,26 +1,37 @@
-//! A fragment shader put together from files, defines and a version line.
+//! A program put together from files, defines and a version line.
 
 use std::fmt::Write as _;
 
-/// The vertex stage of every pass: one triangle over the whole target.
-pub(crate) const FULL_SCREEN: &str = include_str!("../../glsl/common/full_screen.vert");
+/// A file below `glsl/` as a `(name, text)` pair for [`ShaderSource::file`](crate::gl::ShaderSource).
+macro_rules! glsl {
+    ($name:literal) => {
+        ($name, include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/glsl/", $name)))
+    };
+}
+pub(crate) use glsl;
+
+/// The vertex stage of a pass unless it has one of its own: one triangle over the whole target.
+const FULL_SCREEN: (&str, &str) = glsl!("common/full_screen.vert");
 
 /// The GLSL version of every shader.
 pub(crate) const VERSION_LINE: &str = "#version 330 core\n";
 
-/// A fragment shader: a label, defines and the files that follow each other.
+/// A program: a label, defines, and the files that follow each other in its stages.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ShaderSource {
     label: String,
     defines: Vec<(&'static str, u32)>,
+    /// The fragment stage.
     files: Vec<(&'static str, &'static str)>,
+    /// The vertex stage.
+    vertex_files: Vec<(&'static str, &'static str)>,
 }
 
 impl ShaderSource {
     /// An empty source; `label` names its pass in errors, debug groups and timings.
     #[must_use]
     pub(crate) fn new(label: impl Into<String>) -> Self {
-        Self { label: label.into(), defines: Vec::new(), files: Vec::new() }
+        Self { label: label.into(), defines: Vec::new(), files: Vec::new(), vertex_files: vec![FULL_SCREEN] }
     }
 
     /// `#define name value`.
@@ -43,6 +54,13 @@ impl ShaderSource {
         self
     }
 
+    /// The vertex stage in the place of the one triangle; the defines hold for it as well.
+    #[must_use]
+    pub(crate) fn vertex_stage(mut self, files: impl Into<Vec<(&'static str, &'static str)>>) -> Self {
+        self.vertex_files = files.into();
+        self
+    }
+
     /// The pass's label.
     #[must_use]
     pub fn label(&self) -> &str {
@@ -54,30 +72,34 @@ impl ShaderSource {
     /// `#line` restarts the count in each file, so a driver's `2:17` is line 17 of the second file.
     #[must_use]
     pub fn fragment(&self) -> String {
-        let mut text = String::from(VERSION_LINE);
-        for (name, value) in &self.defines {
-            writeln!(text, "#define {name} {value}").expect("writing to a string");
-        }
-        for (number, (name, file)) in (1..).zip(&self.files) {
-            write!(text, "// {name}\n#line 1 {number}\n{file}").expect("writing to a string");
-        }
-        text
+        self.stage(&self.files, 1)
     }
 
     /// The whole text of the vertex shader, ready for glShaderSource.
     #[must_use]
     pub fn vertex(&self) -> String {
-        format!("{VERSION_LINE}{FULL_SCREEN}")
+        self.stage(&self.vertex_files, 1 + self.files.len())
     }
 
-    /// The fragment shader for a reader: each line with the file's number and its own.
+    fn stage(&self, files: &[(&str, &str)], first_number: usize) -> String {
+        let mut text = String::from(VERSION_LINE);
+        for (name, value) in &self.defines {
+            writeln!(text, "#define {name} {value}").expect("writing to a string");
+        }
+        for (number, (name, file)) in (first_number..).zip(files) {
+            write!(text, "// {name}\n#line 1 {number}\n{file}").expect("writing to a string");
+        }
+        text
+    }
+
+    /// Both stages for a reader, the fragment stage first: each line with the file's number and its own.
     #[must_use]
     pub fn listing(&self) -> String {
         let mut listing = String::new();
         for (name, value) in &self.defines {
             writeln!(listing, "      #define {name} {value}").expect("writing to a string");
         }
-        for (number, (name, file)) in (1..).zip(&self.files) {
+        for (number, (name, file)) in (1..).zip(self.files.iter().chain(&self.vertex_files)) {
             writeln!(listing, "  file {number}: glsl/{name}").expect("writing to a string");
             for (line, text) in (1..).zip(file.lines()) {
                 writeln!(listing, "{number}:{line:<4} {text}").expect("writing to a string");
@@ -86,11 +108,3 @@ impl ShaderSource {
         listing
     }
 }
-
-/// A file below `glsl/` as a `(name, text)` pair for [`ShaderSource::file`](crate::gl::ShaderSource).
-macro_rules! glsl {
-    ($name:literal) => {
-        ($name, include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/glsl/", $name)))
-    };
-}
-pub(crate) use glsl;

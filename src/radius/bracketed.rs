@@ -1,56 +1,122 @@
-//! The bracketed search: bounds for the radii of blocks of pixels, of ever smaller blocks, then the pixels.
+//! The bracketed search: bounds for the radii of tiles, of blocks inside them, then the pixels.
 //!
 //! For a block of side b, let the *outer* box of radius r be the union of its pixels' boxes, and the *inner* box what
 //! they have in common. Let L be the smallest radius whose outer box holds enough: no pixel's radius is smaller. The
 //! inner box of radius L + b - 1 is the outer box of L, so no pixel's radius is larger than that. One search for L
-//! thus leaves b candidates for every pixel of the block, and those of a block inside a larger one start from what is
-//! left there. Where an edge is in reach and the count is scaled, the inside area differs from pixel to pixel: L is
+//! thus leaves b candidates for every pixel of the block; for a block inside a larger one, of side B, it starts with
+//! B - b + 1. Where an edge is in reach and the count is scaled, the inside area differs from pixel to pixel: L is
 //! tested with the least, and the upper bound is searched with the most. Both tests are monotone in r, as is the
 //! pixel's own between them, so that the result is the definition's.
 //!
-//! - Cost: of 4 fetches each, log2 MR boxes for one pixel in 1024, 5 for one in 64, 3 for one in 4, and 1 for each; the
-//!   density and MR hardly matter. Where edges are scaled, a few more near the edges.
-//! - Memory: 4 bytes for each block, 0.27 of the map together.
-//! - Tried, and no gain: see the table in the module above.
+//! A tile of 32 x 32 pixels also says which programs its pixels take, and the vertex stage draws nothing for the others:
+//!
+//! | class | what is known | its pixels |
+//! |---|---|---|
+//! | unreached | no box of MR holds enough, or the mask excludes all | are set in one clear |
+//! | dense | n in 16 pixels on the average | try 1, 2, ... |
+//! | inner | no edge in reach, or edges are zero | brackets of 8, of 2, one box each: no loop, no branch |
+//! | edge | scaled counts | brackets of 8, of 2, with loops |
+//!
+//! - Cost, inner: 4 fetches for each of 5 boxes in 64 pixels, 3 in 4, and 1 a pixel, whatever the density and MR. Dense:
+//!   1 to 2 boxes a pixel. Unreached: nothing. Edge: as inner and about half as much again.
+//! - Memory: 4 bytes a block, 5 a tile: 0.27 of the map together.
+//! - Exact while a box of radius MR + 16 does not wrap, since outer boxes are larger than those of pixels.
 
 use glam::UVec2;
 
-use super::{of_pixels, search_defines};
+use super::{of_pixels, search_source};
 use crate::error::Result;
+use crate::exactness;
 use crate::gl::{Gl, Pass, Program, ShaderSource, Target, Texture, TextureFormat, glsl};
 use crate::maps::{DensityMap, RadiusMap};
-use crate::settings::Settings;
+use crate::settings::{Edges, Order, Search, Settings};
 use crate::structure::{self, Structure};
 
-const BRACKET: &str = "radius bracket";
+const TILE: &str = "radius tiles";
+const BLOCKS: &str = "radius blocks";
 
-/// Sides of the blocks, from large to small; `radius.frag` knows the last.
-const SIDES: [u32; 3] = [32, 8, 2];
+/// Pixels of a tile's side.
+const TILE_SIDE: u32 = 64;
+/// Pixels of the sides of the blocks inside, each with the side of what it lies in.
+const BLOCK_SIDES: [(u32, u32); 2] = [(TILE_SIDE, 8), (8, FINEST_SIDE)];
+/// Pixels of the side of the smallest blocks: 2, so that two radii are left for a pixel.
+const FINEST_SIDE: u32 = 2;
 
-/// The levels of blocks; the pixels follow.
+/// Which programs a tile's pixels take.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Class {
+    Unreached,
+    Dense,
+    Inner,
+    Edge,
+}
+
+impl Class {
+    /// Those that need brackets of blocks.
+    const WITH_BLOCKS: [Self; 2] = [Self::Inner, Self::Edge];
+
+    /// Whether tiles of the class occur.
+    fn occurs(self, settings: &Settings) -> bool {
+        self != Self::Edge || settings.search.edges == Edges::Scale
+    }
+
+    /// Adds the numbers of all classes, and this one's.
+    fn define(self, source: ShaderSource) -> ShaderSource {
+        define_classes(source).define("CLASS", self as u32)
+    }
+}
+
+fn define_classes(source: ShaderSource) -> ShaderSource {
+    source
+        .define("CLASS_UNREACHED", Class::Unreached as u32)
+        .define("CLASS_DENSE", Class::Dense as u32)
+        .define("CLASS_INNER", Class::Inner as u32)
+        .define("CLASS_EDGE", Class::Edge as u32)
+}
+
+/// Brackets of tiles and blocks, and the programs that fill them and the map.
 #[derive(Debug)]
 pub(super) struct Bracketed {
-    widest: Program,
-    narrower: Program,
-    /// Brackets for each of `SIDES`.
-    levels: Vec<(u32, Target)>,
-    pixels: Program,
+    /// Brackets and classes.
+    tiles: Target,
+    tile: Program,
+    blocks: Vec<Blocks>,
+    pixels: Vec<(Class, Program)>,
+    /// One more than MR stands for "not even MR", which only the mask wants to know.
     last_radius: u32,
     settings: Settings,
 }
 
+/// The brackets of blocks of one size.
+#[derive(Debug)]
+struct Blocks {
+    target: Target,
+    programs: Vec<Program>,
+}
+
 impl Bracketed {
     pub(super) fn new(gl: &Gl, size: UVec2, density: TextureFormat, settings: &Settings) -> Result<Self> {
-        let level = |side: u32| {
-            let texture = Texture::new(gl, TextureFormat::R32Uint, (size + side - 1) / side, 1)?;
-            Ok((side, Target::single(gl, texture)?))
+        let texture = |format, side: u32| Texture::new(gl, format, (size + side - 1) / side, 1);
+        let programs = |sources: Vec<ShaderSource>| {
+            sources.iter().map(|source| Program::new(gl, source)).collect::<Result<Vec<_>>>()
         };
+        let blocks = BLOCK_SIDES.map(|(wider_side, side)| {
+            Ok(Blocks {
+                target: Target::single(gl, texture(TextureFormat::R32Uint, side)?)?,
+                programs: programs(block_sources(density, settings, wider_side, side))?,
+            })
+        });
+        let pixels = pixel_sources(density, settings);
+        let classes: Vec<_> = pixels.iter().map(|&(class, _)| class).collect();
+        let pixels = programs(pixels.into_iter().map(|(_, source)| source).collect())?;
         Ok(Self {
-            widest: Program::new(gl, &bracket_source(density, settings, Wider::No))?,
-            narrower: Program::new(gl, &bracket_source(density, settings, Wider::Yes))?,
-            levels: SIDES.into_iter().map(level).collect::<Result<_>>()?,
-            pixels: Program::new(gl, &super::search_source(density, settings, super::Continued::No))?,
-            // One more than MR stands for "not even MR", which only the mask wants to know.
+            tiles: Target::new(
+                gl,
+                vec![texture(TextureFormat::R32Uint, TILE_SIDE)?, texture(TextureFormat::R8Uint, TILE_SIDE)?],
+            )?,
+            tile: Program::new(gl, &tile_source(density, settings))?,
+            blocks: blocks.into_iter().collect::<Result<_>>()?,
+            pixels: classes.into_iter().zip(pixels).collect(),
             last_radius: settings.search.max_radius + u32::from(settings.limited_mask),
             settings: *settings,
         })
@@ -62,47 +128,132 @@ impl Bracketed {
         structure: &Structure,
         radii: &mut RadiusMap,
     ) -> Result<()> {
-        for index in 0..self.levels.len() {
-            let (wider, rest) = self.levels.split_at_mut(index);
-            let (side, target) = &mut rest[0];
-            let pass = |program| {
-                let pass = Pass::new(BRACKET, program)
-                    .set("map_size", density.size().as_ivec2())
-                    .set("min_photons", self.settings.search.min_photons)
-                    .set("side", side.cast_signed());
-                structure.read_by(pass, density)
-            };
-            match wider.last() {
-                None => {
-                    pass(&self.widest).set("last_radius", self.last_radius.cast_signed()).fill(target)?;
-                }
-                Some((wider_side, wider)) => pass(&self.narrower)
-                    .read("wider", wider.texture())
-                    .set("wider_side", wider_side.cast_signed())
-                    .fill(target)?,
+        let search = self.settings.search;
+        let of_blocks = |label, program| {
+            let pass = Pass::new(label, program)
+                .set("map_size", density.size().as_ivec2())
+                .set("min_photons", search.min_photons);
+            structure.read_by(pass, density)
+        };
+        of_blocks(TILE, &self.tile)
+            .set("last_radius", self.last_radius.cast_signed())
+            .fill(&mut self.tiles)?;
+
+        let [tile_brackets, classes] = self.tiles.textures() else { unreachable!("made with two") };
+        let mut wider = tile_brackets;
+        for Blocks { target, programs } in &mut self.blocks {
+            for program in &*programs {
+                in_tiles(of_blocks(BLOCKS, program).read("wider", wider), classes).fill(target)?;
             }
+            wider = target.texture();
         }
-        let (_, finest) = &self.levels[self.levels.len() - 1];
-        of_pixels(&self.settings, &self.pixels, density, structure)
-            .read("brackets", finest.texture())
-            .fill(radii.target())
+
+        if self.settings.limited_mask {
+            radii.target().clear(&[search.max_radius, 1]);
+        } else {
+            radii.target().clear(&[search.max_radius]);
+        }
+        for (class, program) in &self.pixels {
+            let pass = of_pixels(&self.settings, program, density, structure);
+            let pass = match class {
+                Class::Dense => {
+                    pass.set("first_radius", 1).set("last_radius", search.max_radius.cast_signed())
+                }
+                _ => pass.read("brackets", wider),
+            };
+            in_tiles(pass, classes).fill(radii.target())?;
+        }
+        Ok(())
     }
 }
 
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Wider {
-    No,
-    Yes,
+/// Draws the tiles of the program's class.
+fn in_tiles<'a>(pass: Pass<'a>, classes: &'a Texture) -> Pass<'a> {
+    let grid = classes.size();
+    pass.read("tile_classes", classes)
+        .set("first_tile", glam::IVec2::ZERO)
+        .set("tile_columns", grid.x.cast_signed())
+        .triangles(2 * grid.x * grid.y)
 }
 
-/// The shaders of the blocks.
-pub(super) fn bracket_sources(density: TextureFormat, settings: &Settings) -> [ShaderSource; 2] {
-    [Wider::No, Wider::Yes].map(|wider| bracket_source(density, settings, wider))
+/// Every shader of the search.
+pub(super) fn sources(density: TextureFormat, settings: &Settings) -> Vec<ShaderSource> {
+    let mut sources = vec![tile_source(density, settings)];
+    for (wider_side, side) in BLOCK_SIDES {
+        sources.extend(block_sources(density, settings, wider_side, side));
+    }
+    sources.extend(pixel_sources(density, settings).into_iter().map(|(_, source)| source));
+    sources
 }
 
-fn bracket_source(density: TextureFormat, settings: &Settings, wider: Wider) -> ShaderSource {
-    let source = search_defines(ShaderSource::new(BRACKET), settings)
-        .define_if(wider == Wider::Yes, "INSIDE_WIDER")
+/// The brackets and classes of tiles.
+fn tile_source(density: TextureFormat, settings: &Settings) -> ShaderSource {
+    let source = define_classes(ShaderSource::new(TILE));
+    of_block(source, density, settings, TILE_SIDE).file(glsl!("bracket/tile.frag"))
+}
+
+/// The brackets of blocks, for each class that needs them.
+fn block_sources(
+    density: TextureFormat,
+    settings: &Settings,
+    wider_side: u32,
+    side: u32,
+) -> Vec<ShaderSource> {
+    let of_class = |class: Class| {
+        let source = class
+            .define(ShaderSource::new(BLOCKS))
+            .define("TILE_SIDE", TILE_SIDE)
+            .define("WIDER_SIDE", wider_side)
+            .define("WIDER_SIDE_LOG2", wider_side.ilog2())
+            .vertex_stage([glsl!("common/tiles.vert")]);
+        if class == Class::Inner {
+            // One step halves the radii that are left.
+            let steps = (wider_side - side + 1).next_power_of_two().ilog2();
+            of_block(source.define("STEPS", steps), density, &without_edges(settings), side)
+                .file(glsl!("bracket/inner.frag"))
+        } else {
+            of_block(source, density, settings, side).file(glsl!("bracket/edge.frag"))
+        }
+    };
+    Class::WITH_BLOCKS.into_iter().filter(|class| class.occurs(settings)).map(of_class).collect()
+}
+
+/// Adds the edge rule, the counter, and the boxes around a block.
+fn of_block(source: ShaderSource, density: TextureFormat, settings: &Settings, side: u32) -> ShaderSource {
+    let source = source
+        .define("SIDE", side)
+        .define("SIDE_LOG2", side.ilog2())
+        .define_if(settings.search.edges == Edges::Zero, "EDGES_ZERO")
+        .define_if(exactness::needs_wide_products(settings), "WIDE_PRODUCTS")
         .file(glsl!("common/enough.glsl"));
-    structure::counter(source, density, settings).file(glsl!("bracket.frag"))
+    structure::counter(source, density, settings).file(glsl!("bracket/block.glsl"))
+}
+
+/// The pixels of each class that is drawn.
+fn pixel_sources(density: TextureFormat, settings: &Settings) -> Vec<(Class, ShaderSource)> {
+    let of_class = |class: Class| {
+        let settings = match class {
+            Class::Dense => {
+                let search = Search { order: Order::Forward, ..settings.search };
+                Settings { search, ..*settings }
+            }
+            Class::Inner => without_edges(settings),
+            Class::Unreached | Class::Edge => *settings,
+        };
+        let source = search_source(density, &settings, super::Continued::No);
+        let source = class
+            .define(source)
+            .define("TILE_SIDE", TILE_SIDE)
+            .define("SIDE", 1_u32)
+            .define("WIDER_SIDE_LOG2", FINEST_SIDE.ilog2())
+            .vertex_stage([glsl!("common/tiles.vert")]);
+        (class, source)
+    };
+    let classes = [Class::Dense, Class::Inner, Class::Edge].into_iter();
+    classes.filter(|class| class.occurs(settings)).map(of_class).collect()
+}
+
+/// The same question where no edge is in reach.
+fn without_edges(settings: &Settings) -> Settings {
+    Settings { search: Search { edges: Edges::Zero, ..settings.search }, ..*settings }
 }

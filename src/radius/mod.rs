@@ -82,21 +82,22 @@ enum Continued {
 
 /// Every shader that a search of these settings may compile.
 pub(crate) fn search_sources(density: TextureFormat, settings: &Settings) -> Vec<ShaderSource> {
-    let mut sources = vec![search_source(density, settings, Continued::No)];
+    let one_pass = search_source(density, settings, Continued::No);
     match settings.search.order {
         Order::Forward if settings.method != Method::NaiveMipmap => {
-            sources.push(search_source(density, settings, Continued::Yes));
+            vec![one_pass, search_source(density, settings, Continued::Yes)]
         }
-        Order::Forward | Order::Binary => {}
-        Order::Bracketed => sources.extend(bracketed::bracket_sources(density, settings)),
+        Order::Forward | Order::Binary => vec![one_pass],
+        Order::Bracketed => bracketed::sources(density, settings),
     }
-    sources
 }
 
 /// One search and one counter.
 fn search_source(density: TextureFormat, settings: &Settings, continued: Continued) -> ShaderSource {
-    let source = search_defines(ShaderSource::new(SEARCH), settings)
+    let source = ShaderSource::new(SEARCH)
+        .define_if(settings.search.edges == Edges::Zero, "EDGES_ZERO")
         .define_if(settings.faults.float_ratio, "FAULT_FLOAT_RATIO")
+        .define_if(exactness::needs_wide_products(settings), "WIDE_PRODUCTS")
         .define_if(settings.limited_mask, "LIMITED_MASK")
         .define_if(continued == Continued::Yes, "CONTINUED");
     let source = match settings.search.order {
@@ -109,11 +110,4 @@ fn search_source(density: TextureFormat, settings: &Settings, continued: Continu
         Method::NaiveMipmap => glsl!("naive_mipmap.frag"),
         _ => glsl!("radius.frag"),
     })
-}
-
-/// What the edge rule of `enough.glsl` depends on.
-fn search_defines(source: ShaderSource, settings: &Settings) -> ShaderSource {
-    source
-        .define_if(settings.search.edges == Edges::Zero, "EDGES_ZERO")
-        .define_if(exactness::needs_wide_products(settings), "WIDE_PRODUCTS")
 }

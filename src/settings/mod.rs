@@ -31,6 +31,18 @@ pub struct Search {
     pub order: Order,
 }
 
+impl Search {
+    /// The radius that no counted box exceeds in area: MR, and for a bracketed search half a tile more, since it counts
+    /// boxes around tiles of 32 x 32 pixels.
+    #[must_use]
+    pub fn largest_counted_radius(&self) -> u32 {
+        match self.order {
+            Order::Forward | Order::Binary => self.max_radius,
+            Order::Bracketed => self.max_radius + 32,
+        }
+    }
+}
+
 /// What a box holds where it reaches past the map (thesis 3.1, 4.4).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]

@@ -1,6 +1,8 @@
-// Scan, step 4: the sum of all elements before each, for a run of 8 at once. Follows a file that defines the elements.
-uniform usampler2D groups_before;
+// Scan, step 3: the sum of all elements before each, for a run of 8 at once: whole groups first, then the elements of the
+// run's own group. Follows a file that defines the elements.
+uniform usampler2D group_sums;
 uniform int elements;
+uniform int group_size;
 
 layout(location = 0) out uvec4 before_0;
 layout(location = 1) out uvec4 before_1;
@@ -15,15 +17,17 @@ void main()
 {
     ivec2 run = place(int(gl_FragCoord.x), int(gl_FragCoord.y));
     int first = run.x * 8;
-    int group = first / GROUP;
-    uvec4 sum = texelFetch(groups_before, place(group, run.y), 0);
-    for (int i = group * GROUP; i < first; ++i) {
+    int group = first / group_size;
+    uvec4 sum = uvec4(0);
+    for (int i = 0; i < group; ++i) {
+        sum += texelFetch(group_sums, place(i, run.y), 0);
+    }
+    for (int i = group * group_size; i < first; ++i) {
         sum += element(i, run.y);
     }
     uvec4 before[8];
     for (int i = 0; i < 8; ++i) {
         before[i] = sum;
-        // Nothing reads what follows the last element.
         sum += element(min(first + i, elements - 1), run.y);
     }
     before_0 = before[0];

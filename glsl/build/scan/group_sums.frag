@@ -1,13 +1,14 @@
-// Scan, step 2: the sum of each group of GROUP elements. Follows a file that defines the elements.
+// Scan, step 2: the sum of each group of elements. Follows a file that defines the elements.
 uniform int elements;
+uniform int group_size;
 
 layout(location = 0) out uvec4 sum;
 
 void main()
 {
     ivec2 group = place(int(gl_FragCoord.x), int(gl_FragCoord.y));
-    int first = group.x * GROUP;
-    int end = min(first + GROUP, elements);
+    int first = group.x * group_size;
+    int end = min(first + group_size, elements);
     sum = uvec4(0);
     for (int i = first; i < end; ++i) {
         sum += element(i, group.y);

@@ -1,4 +1,4 @@
-// Scan, step 5: the entries of a tile of 4 x 8, from its counts and what lies before it.
+// Scan, step 4: the entries of a tile of 4 x 8, from its counts and what lies before it.
 uniform ivec2 map_size;
 uniform usampler2DArray rows_before;
 uniform usampler2DArray columns_before;

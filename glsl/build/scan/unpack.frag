@@ -1,4 +1,4 @@
-// Scan, step 6: the entries as one plain texture.
+// Scan, step 5: the entries as one plain texture.
 uniform usampler2DArray tiles;
 
 layout(location = 0) out uint sum;

@@ -4,12 +4,12 @@
 //! entry has little to share with its neighbours:
 //!
 //! 1. the sums of each tile's 8 rows and 4 columns;
-//! 2. to 4. a scan of these along rows (what lies left of each tile), then along columns (what lies left of and below
-//!    it): sums of groups of 16, the groups added up, then runs of 8 with what lies before them;
-//! 5. the entries of each tile, 8 layers of GL_RGBA32UI;
-//! 6. the entries in one plain texture, which every search reads.
+//! 2. and 3. a scan of these along rows (what lies left of each tile), then along columns (what lies left of and below
+//!    it): sums of groups of elements, then runs of 8 with all groups and elements before them;
+//! 4. the entries of each tile, 8 layers of GL_RGBA32UI;
+//! 5. the entries in one plain texture, which every search reads.
 //!
-//! - Passes: 9 at any size. Fetches per texel: 1 + 1 of the map, about 1/3 in between, 1 to unpack.
+//! - Passes: 7 at any size. Fetches per texel: 1 + 1 of the map, about 1/3 in between, 1 to unpack.
 //! - Memory: the table, its packed form of the same size, and 3/8 + 3/8 of that for the sums in between.
 //! - Exact: as any table in u32; sums wrap alike in every order.
 //!
@@ -27,14 +27,11 @@ use crate::structure;
 
 /// Texels of a tile.
 const TILE: UVec2 = UVec2::new(4, 8);
-/// Elements of a scan that a fragment sums before the groups are added up.
-const GROUP: u32 = 16;
 /// Elements, or rows, that a fragment writes: one for each draw buffer.
 const RUN: u32 = 8;
 
 const TILE_SUMS: &str = "sat tile sums";
 const GROUP_SUMS: &str = "sat group sums";
-const GROUPS_BEFORE: &str = "sat groups before";
 const ELEMENTS_BEFORE: &str = "sat elements before";
 const TILES: &str = "sat tiles";
 const UNPACK: &str = "sat unpack";
@@ -112,8 +109,8 @@ enum Axis {
 #[derive(Debug)]
 struct Direction {
     elements: u32,
+    group_size: u32,
     group_sums: Stage,
-    groups_before: Stage,
     elements_before: Stage,
 }
 
@@ -129,34 +126,37 @@ impl Direction {
             Axis::Rows => UVec2::new(along, lines),
             Axis::Columns => UVec2::new(lines, along),
         };
-        let [group_sums, groups_before, elements_before] = scan_sources(axis);
-        let groups = place(elements.div_ceil(GROUP));
+        let [group_sums, elements_before] = scan_sources(axis);
+        // As many groups as elements in a group, or nearly: a run then adds fewest of both.
+        let group_size = elements.isqrt().next_multiple_of(RUN);
         Ok(Self {
             elements,
-            group_sums: Stage::new(gl, &group_sums, groups, None)?,
-            groups_before: Stage::new(gl, &groups_before, groups, None)?,
+            group_size,
+            group_sums: Stage::new(gl, &group_sums, place(elements.div_ceil(group_size)), None)?,
             elements_before: Stage::new(gl, &elements_before, place(elements.div_ceil(RUN)), Some(RUN))?,
         })
     }
 
     /// Sums all elements before each, read from `inputs`.
     fn scan(&mut self, inputs: &[(&'static str, &Texture)]) -> Result<()> {
-        let Self { elements, group_sums, groups_before, elements_before } = self;
-        let count = elements.cast_signed();
-        of_elements(Pass::new(GROUP_SUMS, &group_sums.program), inputs, count)
+        let Self { elements, group_size, group_sums, elements_before } = self;
+        let counts = (elements.cast_signed(), group_size.cast_signed());
+        of_elements(Pass::new(GROUP_SUMS, &group_sums.program), inputs, counts)
             .fill(&mut group_sums.target)?;
-        Pass::new(GROUPS_BEFORE, &groups_before.program)
+        of_elements(Pass::new(ELEMENTS_BEFORE, &elements_before.program), inputs, counts)
             .read("group_sums", group_sums.target.texture())
-            .fill(&mut groups_before.target)?;
-        of_elements(Pass::new(ELEMENTS_BEFORE, &elements_before.program), inputs, count)
-            .read("groups_before", groups_before.target.texture())
             .fill(&mut elements_before.target)
     }
 }
 
 /// Adds what a pass over the elements needs.
-fn of_elements<'a>(pass: Pass<'a>, inputs: &[(&'static str, &'a Texture)], count: i32) -> Pass<'a> {
-    inputs.iter().fold(pass.set("elements", count), |pass, &(name, texture)| pass.read(name, texture))
+fn of_elements<'a>(
+    pass: Pass<'a>,
+    inputs: &[(&'static str, &'a Texture)],
+    (elements, group_size): (i32, i32),
+) -> Pass<'a> {
+    let pass = pass.set("elements", elements).set("group_size", group_size);
+    inputs.iter().fold(pass, |pass, &(name, texture)| pass.read(name, texture))
 }
 
 /// The shaders in the order of the passes.
@@ -172,16 +172,15 @@ fn tile_sums_source(density: TextureFormat, settings: &Settings) -> ShaderSource
         .file(glsl!("build/scan/tile_sums.frag"))
 }
 
-fn scan_sources(axis: Axis) -> [ShaderSource; 3] {
+fn scan_sources(axis: Axis) -> [ShaderSource; 2] {
     let source = |label| {
-        ShaderSource::new(label).define("GROUP", GROUP).file(match axis {
+        ShaderSource::new(label).file(match axis {
             Axis::Rows => glsl!("build/scan/along_rows.glsl"),
             Axis::Columns => glsl!("build/scan/along_columns.glsl"),
         })
     };
     [
         source(GROUP_SUMS).file(glsl!("build/scan/group_sums.frag")),
-        source(GROUPS_BEFORE).file(glsl!("build/scan/groups_before.frag")),
         source(ELEMENTS_BEFORE).file(glsl!("build/scan/elements_before.frag")),
     ]
 }
