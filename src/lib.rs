@@ -43,7 +43,7 @@
 //! | module | what it holds |
 //! |---|---|
 //! | `cli`, `main` | the program, built on the public library: one file a verb |
-//! | [`measure`] | how right and how fast a result is: differences, timing runs (`bench`), the thesis's tables and claims (`thesis`), both together (`reproduce`), a page of them (`report`) |
+//! | [`measure`] | how right and how fast a result is: differences, timing runs (`bench`), rivals on the processor (`rivals`), the thesis's tables and claims (`thesis`), both together (`reproduce`), a page of them (`report`) |
 //! | [`pipeline`] | the stages in order; what a host calls |
 //! | `radius` | density map and structure in, radius map out |
 //! | [`structure`] | brute force, mipmaps, pyramid, summed-area table: a section of the thesis each |

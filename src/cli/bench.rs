@@ -1,5 +1,6 @@
 //! `varikernel bench`: how fast each method is on this machine.
 
+mod rivals;
 mod table;
 
 use std::path::{Path, PathBuf};
@@ -12,6 +13,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use varikernel::context::{self, DeviceChoice};
 use varikernel::image::{ReadOptions, check_writable, read_counts};
 use varikernel::measure::bench::{self, BenchSettings, MapSource, Progress, Protocol, Report};
+use varikernel::measure::rivals::Rival;
 use varikernel::settings::{Edges, MAX_RADIUS_LIMIT, Method, Order, SatBuild, SatSamples};
 use varikernel::synth::Kind;
 
@@ -65,6 +67,11 @@ pub(crate) struct Args {
     /// Samples a pass when the summed-area table is built by doubling.
     #[arg(long, value_enum, value_delimiter = ',', default_value = "2,4")]
     sat_samples: Vec<SatSamples>,
+
+    /// Time rivals on the processor as well: an exact scanline search on one core and on all, and a k-d tree of the
+    /// photons (edges zero only).
+    #[arg(long)]
+    rivals: bool,
 
     /// How often: 5 sets of up to 100 samples, or the thesis's 5 sets of up to 1000; slow cases take fewer.
     #[arg(long, value_enum, default_value_t = ProtocolName::Short)]
@@ -152,6 +159,7 @@ fn settings(args: &Args) -> BenchSettings {
         min_photons: args.min_photons.clone(),
         max_radius: args.max_radius.clone(),
         edges: args.edges.clone(),
+        rivals: if args.rivals { Rival::ALL.to_vec() } else { Vec::new() },
         ..BenchSettings::new(protocol)
     }
 }

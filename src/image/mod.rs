@@ -89,6 +89,11 @@ impl<T: Copy> Image<T> {
         &self.values
     }
 
+    /// All values, row after row, to be written.
+    pub fn values_mut(&mut self) -> &mut [T] {
+        &mut self.values
+    }
+
     /// The value at column `x` and row `y`.
     ///
     /// # Panics

@@ -7,6 +7,8 @@ mod difference;
 pub mod report;
 #[cfg(feature = "report")]
 pub mod reproduce;
+#[cfg(feature = "bench")]
+pub mod rivals;
 mod statistics;
 mod summary;
 #[cfg(feature = "report")]

@@ -9,6 +9,7 @@ use comfy_table::{CellAlignment, ContentArrangement, Table};
 use varikernel::measure::bench::{Case, Device, Report, Run, Stage, Verdict, compare};
 use varikernel::settings::{Edges, Order};
 
+use super::rivals;
 use crate::cli::output;
 
 /// Columns of a terminal that tables fit into.
@@ -39,17 +40,23 @@ pub(super) fn print_report(report: &Report, json: Option<&Path>) -> Result<()> {
         let mut table =
             new_table(&["stage", "variant", "search", "ms", "spread", "copies", "samples", "answer"]);
         align_right(&mut table, 3..=6);
-        for run in runs {
+        for run in &runs {
             table.add_row(row(run));
         }
         output::print(&format!("\n{section}"))?;
         output::print(&table.trim_fmt())?;
+        for line in rivals::against_the_renderer(&runs) {
+            output::print(&line)?;
+        }
     }
     output::print(
         "\nFastest first in each stage. ms: median GPU time. spread: distance of the\n\
          quartiles in parts of the median. copies: ms over those of the copy of the same\n\
          map. answer: whether every radius is the definition's, or how many are not.",
     )?;
+    if report.runs.iter().any(|run| run.case.rival().is_some()) {
+        output::print(rivals::LEGEND)?;
+    }
     print_warnings(report)?;
     if let Some(path) = json {
         output::print(&format!("every sample: {}", path.display()))?;
@@ -62,7 +69,7 @@ fn row(run: &Run) -> [String; 8] {
     let suspect = if run.suspect.is_empty() { "" } else { "!" };
     [
         run.case.stage.name().to_owned(),
-        run.case.variant.clone(),
+        rivals::marked(&run.case),
         order(&run.case).to_owned(),
         three_digits(all.median_ms),
         if all.count > 1 {
@@ -251,7 +258,7 @@ fn map_name(case: &Case) -> String {
     format!("{} {width} x {height}", case.map)
 }
 
-fn order(case: &Case) -> &'static str {
+pub(super) fn order(case: &Case) -> &'static str {
     match (case.search, case.stage) {
         (Some(Order::Forward), _) => "forward",
         (Some(Order::Binary), _) => "binary",
@@ -262,7 +269,7 @@ fn order(case: &Case) -> &'static str {
 }
 
 /// Three digits that count, whatever the magnitude.
-fn three_digits(value: f64) -> String {
+pub(super) fn three_digits(value: f64) -> String {
     let digits = match value {
         value if value >= 99.95 => 0,
         value if value >= 9.995 => 1,

@@ -4,9 +4,11 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
+use super::rival;
 use super::settings::{BenchSettings, MapInfo};
 use crate::measure::Unit;
-use crate::settings::{Edges, Method, Order, SatBuild, SatSamples, Settings};
+use crate::measure::rivals::Rival;
+use crate::settings::{Edges, Method, Order, SatBuild, SatSamples, Search, Settings};
 
 /// What is timed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -44,13 +46,14 @@ pub struct Case {
     /// What is timed.
     pub stage: Stage,
     /// The method and, where it counts, how its structure is built: `brute-force`, `naive-mipmap`,
-    /// `averaged-mipmap`, `pyramid`, `sat` (search), `sat-doubling-4` or `sat-scan` (build and frame), `copy`, `probe`.
+    /// `averaged-mipmap`, `pyramid`, `sat` (search), `sat-doubling-4` or `sat-scan` (build and frame), `copy`, `probe`;
+    /// or a [`Rival`]'s name.
     pub variant: String,
     /// The map's name.
     pub map: String,
     /// The map's columns and rows.
     pub size: [u32; 2],
-    /// The method.
+    /// The method; none for a unit and a rival.
     pub method: Option<Method>,
     /// Samples a pass in which the summed-area table is built, if it is built by doubling.
     pub sat_samples: Option<SatSamples>,
@@ -119,7 +122,7 @@ impl fmt::Display for Case {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [width, height] = self.size;
         write!(formatter, "{}", self.stage.name())?;
-        if self.method.is_some() {
+        if self.method.is_some() || self.rival().is_some() {
             write!(formatter, " {}", self.variant)?;
         }
         if let Some(order) = self.search {
@@ -154,9 +157,10 @@ pub(super) fn edges_name(edges: Edges) -> &'static str {
 pub(super) enum Work {
     Unit(Unit),
     Pipeline(Settings),
+    Rival(Rival, Search),
 }
 
-/// Every case of a map, units first. A brute-force search is its whole frame, so only the frame is a case.
+/// Every case of a map, units first and rivals last. A brute-force search is its whole frame, so only the frame is a case.
 pub(super) fn cases(settings: &BenchSettings, map: &MapInfo) -> Vec<(Case, Work)> {
     let mut cases: Vec<(Case, Work)> =
         [Unit::Copy, Unit::Probe].map(|unit| (Case::unit(unit, map), Work::Unit(unit))).into();
@@ -172,6 +176,7 @@ pub(super) fn cases(settings: &BenchSettings, map: &MapInfo) -> Vec<(Case, Work)
             }
         }
     }
+    cases.extend(rival::cases(settings, map));
     cases
 }
 

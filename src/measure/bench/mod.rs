@@ -8,11 +8,14 @@
 //! time, so that a machine that slows down meanwhile slows all cases alike and the copy with them. Each set
 //! starts with one untimed run. The time that is left is shared out anew before each set: slow cases get few samples,
 //! but every case gets one, as long as the budget lasts.
+//!
+//! [Rivals](super::rivals) on the processor are cases like the others, at the stage of a whole frame.
 
 mod case;
 mod compare;
 mod files;
 mod report;
+mod rival;
 mod runner;
 mod settings;
 mod workbench;

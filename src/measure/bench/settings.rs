@@ -7,6 +7,7 @@ use glam::UVec2;
 use serde::{Deserialize, Serialize};
 
 use crate::image::Image;
+use crate::measure::rivals::Rival;
 use crate::settings::{Edges, Method, Order, SatBuild, SatSamples, Search, Settings};
 
 /// How often a case is repeated.
@@ -51,6 +52,9 @@ pub struct BenchSettings {
     pub max_radius: Vec<u32>,
     /// Edge rules.
     pub edges: Vec<Edges>,
+    /// Rivals on the processor, timed beside the methods.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub rivals: Vec<Rival>,
     /// Everything else: storage, split, matching, faults. What is listed above is taken from there.
     pub base: Settings,
     /// How often.
@@ -58,7 +62,7 @@ pub struct BenchSettings {
 }
 
 impl BenchSettings {
-    /// The exact methods, the thesis's numbers of samples, both searches, n = 25, MR = 32.
+    /// The exact methods, the thesis's numbers of samples, both searches, n = 25, MR = 32, no rivals.
     #[must_use]
     pub fn new(protocol: Protocol) -> Self {
         let base = Settings::default();
@@ -70,6 +74,7 @@ impl BenchSettings {
             min_photons: vec![base.search.min_photons],
             max_radius: vec![base.search.max_radius],
             edges: vec![base.search.edges],
+            rivals: Vec::new(),
             base,
             protocol,
         }
@@ -110,7 +115,8 @@ impl BenchSettings {
             .collect()
     }
 
-    fn questions(&self) -> Vec<Search> {
+    /// Every n with every MR, edge rule and order.
+    pub(super) fn questions(&self) -> Vec<Search> {
         let mut questions = Vec::new();
         for &min_photons in &self.min_photons {
             for &max_radius in &self.max_radius {

@@ -3,6 +3,7 @@
 use std::time::{Duration, Instant};
 
 use super::case::{Stage, Work};
+use super::rival::{self, Rivals};
 use super::settings::{BenchSettings, MapSource};
 use crate::error::{Error, Result};
 use crate::exactness::CountBounds;
@@ -21,6 +22,7 @@ pub(super) struct Workbench {
     density: DensityMap,
     units: Vec<(Unit, UnitPass)>,
     pipelines: Vec<RadiusPipeline>,
+    rivals: Rivals,
     answers: Vec<(Search, Image<u32>)>,
 }
 
@@ -40,6 +42,7 @@ impl Workbench {
             density,
             units: Vec::new(),
             pipelines: Vec::new(),
+            rivals: Rivals::default(),
             answers: Vec::new(),
         })
     }
@@ -60,6 +63,7 @@ impl Workbench {
                     self.pipelines.push(pipeline);
                 }
             }
+            Work::Rival(rival, search) => self.rivals.prepare(rival, search, size)?,
         }
         Ok(())
     }
@@ -72,6 +76,9 @@ impl Workbench {
         limit: usize,
         time: Duration,
     ) -> Result<Vec<Sample>> {
+        if let Work::Rival(..) = work {
+            return rival::take_set(|| self.run_once(work, stage), limit, time);
+        }
         let start = Instant::now();
         let mut set = Vec::new();
         if stage == Stage::Search {
@@ -101,6 +108,10 @@ impl Workbench {
                     Stage::Copy | Stage::Probe | Stage::Frame => pipeline.render(&self.density).map(drop),
                 }
             }
+            Work::Rival(rival, search) => {
+                self.rivals.run(rival, search, &self.counts);
+                Ok(())
+            }
         }
     }
 
@@ -119,6 +130,10 @@ impl Workbench {
                     _ => pipeline.radii().read()?,
                 };
                 Ok(Difference::between(&found, self.answer(settings.search))?.wrong_pixels)
+            }
+            Work::Rival(rival, search) => {
+                let answer = self.answer(search).clone();
+                self.rivals.wrong_pixels(rival, search, &answer)
             }
         }
     }

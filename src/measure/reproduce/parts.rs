@@ -58,6 +58,7 @@ impl Part {
             min_photons: vec![SEARCH.min_photons],
             max_radius: self.max_radius.clone(),
             edges: vec![Edges::Scale],
+            rivals: Vec::new(),
             base: Settings::thesis(),
             protocol,
         }
