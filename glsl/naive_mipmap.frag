@@ -16,7 +16,8 @@ void main()
     ivec2 pixel = min(ivec2(gl_FragCoord.xy), map_size - 1);
     int level = 0;
     int r = 0;
-    bool found = false;
+    bool masked = needs_none(pixel);
+    bool found = masked;
     while (!found && r < max_radius) {
         // Level l stands for radius 2^(l - 1): half the side of its block.
         ++level;
@@ -29,7 +30,7 @@ void main()
         uint count = to_count(texelFetch(pyramid, block, min(level, top_level)).r);
         found = enough(count, uint(side) * uint(side), inside.x * inside.y);
     }
-    radius = uint(r);
+    radius = masked ? 0u : uint(r);
 #ifdef LIMITED_MASK
     limited = found ? 0u : 1u;
 #endif

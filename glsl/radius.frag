@@ -40,13 +40,14 @@ void main()
 {
     // Helper fragments of a quad that lie outside the map run along; off the map they could loop for ever.
     ivec2 center = min(ivec2(gl_FragCoord.xy), map_size - 1);
+    bool masked = needs_none(center);
 
 #ifdef ORDER_FORWARD
     int r = first_radius;
-    bool found = false;
+    bool found = masked;
 #ifdef CONTINUED
     uint before = texelFetch(found_before, center, 0).r;
-    if (before != 0u) {
+    if (!masked && before != 0u) {
         r = int(before);
         found = true;
     }
@@ -68,7 +69,7 @@ void main()
     // At most two are left.
     r = enough_within(center, r) ? r : last;
 #else
-    while (r < last) {
+    while (r < last && !masked) {
         int middle = (r + last) >> 1;
         if (enough_within(center, middle)) {
             last = middle;
@@ -85,7 +86,7 @@ void main()
     int r = 1;
     int last = max_radius;
     bool found = false;
-    while (r < last) {
+    while (r < last && !masked) {
         int middle = (r + last) >> 1;
         if (enough_within(center, middle)) {
             last = middle;
@@ -100,8 +101,8 @@ void main()
 #endif
 #endif
 
-    radius = uint(r);
+    radius = masked ? 0u : uint(r);
 #ifdef LIMITED_MASK
-    limited = found ? 0u : 1u;
+    limited = found || masked ? 0u : 1u;
 #endif
 }

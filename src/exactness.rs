@@ -50,6 +50,18 @@ impl CountBounds {
         }
     }
 
+    /// The bounds of these photons and others together.
+    #[must_use]
+    pub fn with(self, others: Self) -> Self {
+        Self {
+            total: self.total.saturating_add(others.total),
+            densest_box: self.densest_box.saturating_add(others.densest_box),
+            densest_clamped_box: self.densest_clamped_box.saturating_add(others.densest_clamped_box),
+            max_radius: self.max_radius.min(others.max_radius),
+            min_photons: self.min_photons.min(others.min_photons),
+        }
+    }
+
     /// The bounds of `density` itself; boxes are looked at only where the total does not settle it.
     #[must_use]
     pub fn of(density: &Image<u32>, search: Search) -> Self {

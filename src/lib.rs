@@ -87,6 +87,7 @@ pub mod context;
 mod driver_limits;
 pub mod error;
 pub mod exactness;
+pub mod frame;
 pub mod gl;
 pub mod image;
 pub mod maps;
@@ -103,8 +104,9 @@ pub use {glam, glow};
 
 pub use error::{Error, Result};
 pub use exactness::CountBounds;
+pub use frame::{Changed, Frame};
 pub use gl::Gl;
 pub use image::Image;
-pub use maps::{DensityMap, RadiusMap};
+pub use maps::{DensityMap, Mask, RadiusMap};
 pub use pipeline::RadiusPipeline;
 pub use settings::Settings;

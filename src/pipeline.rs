@@ -4,9 +4,10 @@ use glam::UVec2;
 
 use crate::driver_limits;
 use crate::error::{Error, Result};
-use crate::exactness::{self, Plan};
+use crate::exactness::{self, CountBounds, Plan};
+use crate::frame::{Changed, Frame, Rectangle};
 use crate::gl::{Gl, ShaderSource, StateGuard, TextureFormat};
-use crate::maps::{DensityMap, RadiusMap};
+use crate::maps::{DensityMap, Mask, RadiusMap};
 use crate::radius::{self, RadiusSearch};
 use crate::settings::Settings;
 use crate::structure::{self, Structure};
@@ -24,8 +25,20 @@ pub struct RadiusPipeline {
     density_format: TextureFormat,
     structure: Structure,
     search: RadiusSearch,
-    /// The map that the structure was built from.
-    built: Option<glow::Texture>,
+    /// What the structure holds, and whether the radii are those of it.
+    built: Option<Built>,
+    searched: bool,
+}
+
+/// What a structure was built from.
+#[derive(Clone, Copy, Debug)]
+struct Built {
+    map: glow::Texture,
+    plan: Plan,
+    /// Bounds of all photons in it.
+    bounds: CountBounds,
+    /// Whether photons were added to it, so that the map holds a part of them only.
+    grown: bool,
 }
 
 impl RadiusPipeline {
@@ -57,20 +70,35 @@ impl RadiusPipeline {
             structure: Structure::new(gl, size, density_format, &settings)?,
             search: RadiusSearch::new(gl, size, density_format, &settings, passes)?,
             built: None,
+            searched: false,
         };
         gl.check("setting up a radius pipeline")?;
         Ok(pipeline)
     }
 
-    /// Builds the structure and searches: all that a frame needs.
+    /// Builds the structure and searches: all that a frame needs when nothing is known of the one before.
     ///
     /// # Errors
     /// [`Error::Mismatch`] if the map's size or format is another than the pipeline's; [`Error::Inexact`] if the
     /// map's bounds do not prove the result exact and [`Settings::exactness`] asks for that; [`Error::Gl`] if the
     /// driver fails.
     pub fn render(&mut self, density: &DensityMap) -> Result<&RadiusMap> {
-        self.build(density)?;
-        self.search(density)
+        self.update(&Frame::new(density))
+    }
+
+    /// Builds and searches what differs from the frame before, for the pixels that need a radius.
+    ///
+    /// Of [`Frame::changed`], the pipeline believes what it can use: it starts anew when it has no frame before, or one of
+    /// another map, or one whose counts were taken in otherwise. Only tables built by a scan and bracketed searches leave
+    /// out what did not change; others do all of it, or the rectangle with a margin of MR.
+    ///
+    /// # Errors
+    /// As [`render`](Self::render); [`Error::Mismatch`] also if the mask is missing, not expected, or of another size;
+    /// [`Error::Setting`] for photons to be added without a summed-area table.
+    pub fn update(&mut self, frame: &Frame<'_>) -> Result<&RadiusMap> {
+        let known = self.known(frame);
+        self.build_frame(&known)?;
+        self.search_frame(&known)
     }
 
     /// Fills the intermediate structure: the first half of [`render`](Self::render), apart for timing.
@@ -78,14 +106,7 @@ impl RadiusPipeline {
     /// # Errors
     /// As [`render`](Self::render).
     pub fn build(&mut self, density: &DensityMap) -> Result<()> {
-        self.check(density)?;
-        let plan = self.plan(density)?;
-        let _state = StateGuard::new(&self.gl);
-        self.built = None;
-        self.structure.build(density, plan)?;
-        self.gl.check("building the intermediate structure")?;
-        self.built = Some(density.texture().name());
-        Ok(())
+        self.build_frame(&Frame::new(density))
     }
 
     /// Searches the structure that [`build`](Self::build) last filled, from the same map.
@@ -93,8 +114,19 @@ impl RadiusPipeline {
     /// # Errors
     /// As [`render`](Self::render), and [`Error::Mismatch`] if the structure was not built from this map.
     pub fn search(&mut self, density: &DensityMap) -> Result<&RadiusMap> {
-        self.check(density)?;
-        if self.built != Some(density.texture().name()) {
+        self.search_frame(&Frame::new(density))
+    }
+
+    /// The second half of [`update`](Self::update) alone, with all that is in the frame: another mask, for one.
+    ///
+    /// # Errors
+    /// As [`search`](Self::search) and [`update`](Self::update).
+    pub fn search_frame(&mut self, frame: &Frame<'_>) -> Result<&RadiusMap> {
+        if frame.changed == Changed::Nothing && self.searched {
+            return Ok(self.search.radii());
+        }
+        self.check(frame)?;
+        if self.built.is_none_or(|built| built.map != frame.density.texture().name()) {
             return Err(Error::Mismatch {
                 what: "density map of the search",
                 expected: "the one that was built last".to_owned(),
@@ -102,9 +134,63 @@ impl RadiusPipeline {
             });
         }
         let _state = StateGuard::new(&self.gl);
-        self.search.estimate(density, &self.structure)?;
+        self.searched = false;
+        self.search.estimate(frame, &self.structure)?;
         self.gl.check("searching radii")?;
+        self.searched = true;
         Ok(self.search.radii())
+    }
+
+    /// The first half of [`update`](Self::update).
+    fn build_frame(&mut self, frame: &Frame<'_>) -> Result<()> {
+        if frame.changed == Changed::Nothing && self.built.is_some() {
+            return Ok(());
+        }
+        self.check(frame)?;
+        let density = frame.density;
+        let adds_to = self.built.filter(|_| frame.changed == Changed::Added);
+        let bounds = adds_to.map_or(density.bounds(), |built| built.bounds.with(density.bounds()));
+        let plan = exactness::plan(&self.settings, self.size, bounds)?;
+        if adds_to.is_some() && plan.count_limit != u32::MAX {
+            return Err(Error::Inexact {
+                reason: "so many photons were added that a box may hold more than 32-bit sums do, and counts that came \
+                         in parts cannot be clamped to n"
+                    .to_owned(),
+                remedy: "give the map of all photons anew (Changed::Everything)".to_owned(),
+            });
+        }
+        let _state = StateGuard::new(&self.gl);
+        let before = self.built.take();
+        let whole = Rectangle::whole(self.size);
+        match frame.changed {
+            Changed::Added if adds_to.is_some() => self.structure.add(density, plan)?,
+            Changed::Rectangle { first, size } if before.is_some() => {
+                if let Some(changed) = Rectangle::inside(self.size, first, size) {
+                    self.structure.build(density, plan, changed)?;
+                }
+            }
+            _ => self.structure.build(density, plan, whole)?,
+        }
+        self.gl.check("building the intermediate structure")?;
+        self.built = Some(Built { map: density.texture().name(), plan, bounds, grown: adds_to.is_some() });
+        Ok(())
+    }
+
+    /// The frame with as much of [`Frame::changed`] as this pipeline can build on.
+    fn known<'a>(&self, frame: &Frame<'a>) -> Frame<'a> {
+        let map = frame.density.texture().name();
+        let continues = self.searched
+            && self.built.is_some_and(|built| match frame.changed {
+                Changed::Everything => false,
+                // The map of all photons was one, that of the added ones another or the same.
+                Changed::Added => true,
+                Changed::Nothing => built.map == map,
+                Changed::Rectangle { .. } => {
+                    let plan = exactness::plan(&self.settings, self.size, frame.density.bounds());
+                    built.map == map && !built.grown && plan.is_ok_and(|plan| plan == built.plan)
+                }
+            });
+        Frame { changed: if continues { frame.changed } else { Changed::Everything }, ..*frame }
     }
 
     /// What the last [`search`](Self::search) found, to be read after it was timed; undefined before the first.
@@ -127,22 +213,33 @@ impl RadiusPipeline {
         &self.settings
     }
 
-    fn check(&self, density: &DensityMap) -> Result<()> {
+    fn check(&self, frame: &Frame<'_>) -> Result<()> {
+        let mismatch = |what, expected: String, got: String| Err(Error::Mismatch { what, expected, got });
         let describe =
             |size: UVec2, format: TextureFormat| format!("{} x {} {}", size.x, size.y, format.name());
+        let density = frame.density;
         if density.size() != self.size || density.format() != self.density_format {
-            return Err(Error::Mismatch {
-                what: "density map",
-                expected: describe(self.size, self.density_format),
-                got: describe(density.size(), density.format()),
-            });
+            return mismatch(
+                "density map",
+                describe(self.size, self.density_format),
+                describe(density.size(), density.format()),
+            );
         }
-        if self.search.radii().is_written_to(density.texture().name()) {
-            return Err(Error::Mismatch {
-                what: "density map",
-                expected: "a texture of the host".to_owned(),
-                got: "the pipeline's own output".to_owned(),
-            });
+        if frame.mask.is_some() != self.settings.masked {
+            let in_words = |is: bool| if is { "one" } else { "none" }.to_owned();
+            return mismatch("mask", in_words(self.settings.masked), in_words(frame.mask.is_some()));
+        }
+        if let Some(mask) = frame.mask.filter(|mask| mask.size() != self.size) {
+            let size = |size: UVec2| format!("{} x {}", size.x, size.y);
+            return mismatch("mask", size(self.size), size(mask.size()));
+        }
+        let inputs = [Some(density.texture()), frame.mask.map(Mask::texture)];
+        if inputs.into_iter().flatten().any(|input| self.search.radii().is_written_to(input.name())) {
+            return mismatch(
+                "density map or mask",
+                "a texture of the host".to_owned(),
+                "the pipeline's own output".to_owned(),
+            );
         }
         Ok(())
     }

@@ -1,7 +1,6 @@
 // Two triangles for each tile of the class that a pass is for, nothing for the others.
 uniform ivec2 map_size;
 uniform usampler2D tile_classes;
-uniform ivec2 first_tile;
 uniform int tile_columns;
 
 // Places of the corners of two triangles: lower left, lower right, upper left, upper right.
@@ -11,7 +10,7 @@ void main()
 {
     int index = gl_VertexID / 6;
     int corner = CORNERS[gl_VertexID % 6];
-    ivec2 tile = first_tile + ivec2(index % tile_columns, index / tile_columns);
+    ivec2 tile = ivec2(index % tile_columns, index / tile_columns);
     bool drawn = texelFetch(tile_classes, tile, 0).r == uint(CLASS);
     // A texel of the target stands for a block of SIDE x SIDE pixels.
     vec2 place = vec2((tile + ivec2(corner & 1, corner >> 1)) * (TILE_SIDE / SIDE));

@@ -282,6 +282,7 @@ fn settings(args: &Args) -> Settings {
         variation: args.variation,
         exactness: if args.allow_inexact { Exactness::Waived } else { Exactness::Required },
         limited_mask: true,
+        masked: false,
     }
 }
 

@@ -149,7 +149,7 @@ impl<'a> Pass<'a> {
     /// # Errors
     /// [`Error::UnknownUniform`] if the program lacks a name.
     pub(crate) fn fill(self, target: &mut Target) -> Result<()> {
-        self.draw(target, 0, UVec2::ZERO)
+        self.draw(target, 0, UVec2::ZERO, target.size())
     }
 
     /// Draws over `target` from the column and row of `origin` on; what lies before either stays as it is.
@@ -159,7 +159,15 @@ impl<'a> Pass<'a> {
     /// # Errors
     /// [`Error::UnknownUniform`] if the program lacks a name.
     pub(crate) fn fill_from(self, origin: UVec2, target: &mut Target) -> Result<()> {
-        self.draw(target, 0, origin)
+        self.draw(target, 0, origin, target.size())
+    }
+
+    /// Draws over the texels of `target` from `first` to before `end`.
+    ///
+    /// # Errors
+    /// [`Error::UnknownUniform`] if the program lacks a name.
+    pub(crate) fn fill_between(self, first: UVec2, end: UVec2, target: &mut Target) -> Result<()> {
+        self.draw(target, 0, first, end)
     }
 
     /// Draws over `level` of `target`, reading the level before it as the sampler `name`.
@@ -179,15 +187,14 @@ impl<'a> Pass<'a> {
             uniforms: self.uniforms.clone(),
             ..self
         };
-        let drawn = pass.draw(target, level, UVec2::ZERO);
+        let drawn = pass.draw(target, level, UVec2::ZERO, target.texture().level_size(level));
         target.texture().select_levels(0, target.texture().levels() - 1);
         drawn
     }
 
-    fn draw(&self, target: &Target, level: u32, origin: UVec2) -> Result<()> {
-        let size = target.texture().level_size(level);
-        assert!(origin.cmplt(size).all(), "a pass draws something: from {origin} of {size}");
-        let (corner, size) = (origin.as_ivec2(), (size - origin).as_ivec2());
+    fn draw(&self, target: &Target, level: u32, first: UVec2, end: UVec2) -> Result<()> {
+        assert!(first.cmplt(end).all(), "a pass draws something: from {first} to {end}");
+        let (corner, size) = (first.as_ivec2(), (end - first).as_ivec2());
         let gl = self.program.gl();
         gl.labelled(self.label, || {
             self.program.use_program();

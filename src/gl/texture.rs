@@ -48,7 +48,7 @@ impl TextureFormat {
         }
     }
 
-    pub(super) fn is_float(self) -> bool {
+    pub(crate) fn is_float(self) -> bool {
         self == Self::R32Float
     }
 

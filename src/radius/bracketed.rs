@@ -16,6 +16,7 @@
 //! | dense | n in 16 pixels on the average | try 1, 2, ... |
 //! | inner | no edge in reach, or edges are zero | brackets of 8, of 2, one box each: no loop, no branch |
 //! | edge | scaled counts | brackets of 8, of 2, with loops |
+//! | kept | no changed pixel within the radii of the frame before | stay as they are |
 //!
 //! - Cost, inner: 4 fetches for each of 5 boxes in 64 pixels, 3 in 4, and 1 a pixel, whatever the density and MR. Dense:
 //!   1 to 2 boxes a pixel. Unreached: nothing. Edge: as inner and about half as much again.
@@ -24,16 +25,19 @@
 
 use glam::UVec2;
 
-use super::{of_pixels, search_source};
+use super::mask_tiles::{self, MaskTiles};
+use super::{of_mask, of_pixels, search_source};
 use crate::error::Result;
 use crate::exactness;
+use crate::frame::{Changed, Frame, Rectangle};
 use crate::gl::{Gl, Pass, Program, ShaderSource, Target, Texture, TextureFormat, glsl};
-use crate::maps::{DensityMap, RadiusMap};
+use crate::maps::RadiusMap;
 use crate::settings::{Edges, Order, Search, Settings};
 use crate::structure::{self, Structure};
 
 const TILE: &str = "radius tiles";
 const BLOCKS: &str = "radius blocks";
+const UNREACHED: &str = "radius unreached";
 
 /// Pixels of a tile's side.
 const TILE_SIDE: u32 = 64;
@@ -49,6 +53,7 @@ enum Class {
     Dense,
     Inner,
     Edge,
+    Kept,
 }
 
 impl Class {
@@ -72,14 +77,17 @@ fn define_classes(source: ShaderSource) -> ShaderSource {
         .define("CLASS_DENSE", Class::Dense as u32)
         .define("CLASS_INNER", Class::Inner as u32)
         .define("CLASS_EDGE", Class::Edge as u32)
+        .define("CLASS_KEPT", Class::Kept as u32)
 }
 
 /// Brackets of tiles and blocks, and the programs that fill them and the map.
 #[derive(Debug)]
 pub(super) struct Bracketed {
-    /// Brackets and classes.
+    /// Brackets and classes, of this frame and of the one before.
     tiles: Target,
-    tile: Program,
+    tiles_before: Target,
+    tile: [Program; Before::ALL.len()],
+    mask_tiles: Option<MaskTiles>,
     blocks: Vec<Blocks>,
     pixels: Vec<(Class, Program)>,
     /// One more than MR stands for "not even MR", which only the mask wants to know.
@@ -106,15 +114,20 @@ impl Bracketed {
                 programs: programs(block_sources(density, settings, wider_side, side))?,
             })
         });
+        let tiles = || {
+            let (brackets, classes) = (TextureFormat::R32Uint, TextureFormat::R8Uint);
+            Target::new(gl, vec![texture(brackets, TILE_SIDE)?, texture(classes, TILE_SIDE)?])
+        };
+        let [nothing, changed, added] =
+            Before::ALL.map(|before| Program::new(gl, &tile_source(density, settings, before)));
         let pixels = pixel_sources(density, settings);
         let classes: Vec<_> = pixels.iter().map(|&(class, _)| class).collect();
         let pixels = programs(pixels.into_iter().map(|(_, source)| source).collect())?;
         Ok(Self {
-            tiles: Target::new(
-                gl,
-                vec![texture(TextureFormat::R32Uint, TILE_SIDE)?, texture(TextureFormat::R8Uint, TILE_SIDE)?],
-            )?,
-            tile: Program::new(gl, &tile_source(density, settings))?,
+            tiles: tiles()?,
+            tiles_before: tiles()?,
+            tile: [nothing?, changed?, added?],
+            mask_tiles: if settings.masked { Some(MaskTiles::new(gl, size)?) } else { None },
             blocks: blocks.into_iter().collect::<Result<_>>()?,
             pixels: classes.into_iter().zip(pixels).collect(),
             last_radius: settings.search.max_radius + u32::from(settings.limited_mask),
@@ -124,20 +137,33 @@ impl Bracketed {
 
     pub(super) fn estimate(
         &mut self,
-        density: &DensityMap,
+        frame: &Frame<'_>,
         structure: &Structure,
         radii: &mut RadiusMap,
     ) -> Result<()> {
         let search = self.settings.search;
+        let map_size = frame.density.size();
         let of_blocks = |label, program| {
             let pass = Pass::new(label, program)
-                .set("map_size", density.size().as_ivec2())
+                .set("map_size", map_size.as_ivec2())
                 .set("min_photons", search.min_photons);
-            structure.read_by(pass, density)
+            structure.read_by(pass, frame.density)
         };
-        of_blocks(TILE, &self.tile)
-            .set("last_radius", self.last_radius.cast_signed())
-            .fill(&mut self.tiles)?;
+
+        std::mem::swap(&mut self.tiles, &mut self.tiles_before);
+        let (before, changed) = Before::of(frame, map_size);
+        let mut pass =
+            of_blocks(TILE, &self.tile[before as usize]).set("last_radius", self.last_radius.cast_signed());
+        if let (Some(tiles), Some(mask)) = (&mut self.mask_tiles, frame.mask) {
+            pass = pass.read("tile_mask", tiles.reduce(mask)?);
+        }
+        if before != Before::Nothing {
+            pass = pass
+                .read("brackets_before", self.tiles_before.texture())
+                .set("changed_first", changed.first.as_ivec2())
+                .set("changed_end", changed.end.as_ivec2());
+        }
+        pass.fill(&mut self.tiles)?;
 
         let [tile_brackets, classes] = self.tiles.textures() else { unreachable!("made with two") };
         let mut wider = tile_brackets;
@@ -148,18 +174,22 @@ impl Bracketed {
             wider = target.texture();
         }
 
-        if self.settings.limited_mask {
-            radii.target().clear(&[search.max_radius, 1]);
-        } else {
-            radii.target().clear(&[search.max_radius]);
+        // One clear is cheaper than a draw, but takes no heed of what is kept.
+        let clears = before == Before::Nothing && !self.settings.masked;
+        if clears {
+            let unreached = [search.max_radius, 1];
+            radii.target().clear(&unreached[..=usize::from(self.settings.limited_mask)]);
         }
         for (class, program) in &self.pixels {
-            let pass = of_pixels(&self.settings, program, density, structure);
             let pass = match class {
-                Class::Dense => {
-                    pass.set("first_radius", 1).set("last_radius", search.max_radius.cast_signed())
-                }
-                _ => pass.read("brackets", wider),
+                Class::Unreached if clears => continue,
+                Class::Unreached => of_mask(Pass::new(UNREACHED, program), frame)
+                    .set("map_size", map_size.as_ivec2())
+                    .set("max_radius", search.max_radius.cast_signed()),
+                Class::Dense => of_pixels(&self.settings, program, frame, structure)
+                    .set("first_radius", 1)
+                    .set("last_radius", search.max_radius.cast_signed()),
+                _ => of_pixels(&self.settings, program, frame, structure).read("brackets", wider),
             };
             in_tiles(pass, classes).fill(radii.target())?;
         }
@@ -167,18 +197,48 @@ impl Bracketed {
     }
 }
 
+/// What is known of the tiles before their search.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Before {
+    /// Nothing.
+    Nothing,
+    /// Its radii in the frame before, valid where no changed pixel is within them.
+    Changed,
+    /// The same, and that no radius has become larger.
+    Added,
+}
+
+impl Before {
+    const ALL: [Self; 3] = [Self::Nothing, Self::Changed, Self::Added];
+
+    /// What a frame vouches for, and where it changes something.
+    fn of(frame: &Frame<'_>, map_size: UVec2) -> (Self, Rectangle) {
+        let whole = Rectangle::whole(map_size);
+        match frame.changed {
+            Changed::Everything | Changed::Nothing => (Self::Nothing, whole),
+            Changed::Added => (Self::Added, whole),
+            Changed::Rectangle { first, size } => {
+                let nowhere = Rectangle { first: map_size, end: map_size };
+                (Self::Changed, Rectangle::inside(map_size, first, size).unwrap_or(nowhere))
+            }
+        }
+    }
+}
+
 /// Draws the tiles of the program's class.
 fn in_tiles<'a>(pass: Pass<'a>, classes: &'a Texture) -> Pass<'a> {
     let grid = classes.size();
     pass.read("tile_classes", classes)
-        .set("first_tile", glam::IVec2::ZERO)
         .set("tile_columns", grid.x.cast_signed())
         .triangles(2 * grid.x * grid.y)
 }
 
 /// Every shader of the search.
 pub(super) fn sources(density: TextureFormat, settings: &Settings) -> Vec<ShaderSource> {
-    let mut sources = vec![tile_source(density, settings)];
+    let mut sources = Before::ALL.map(|before| tile_source(density, settings, before)).to_vec();
+    if settings.masked {
+        sources.push(mask_tiles::source());
+    }
     for (wider_side, side) in BLOCK_SIDES {
         sources.extend(block_sources(density, settings, wider_side, side));
     }
@@ -187,8 +247,11 @@ pub(super) fn sources(density: TextureFormat, settings: &Settings) -> Vec<Shader
 }
 
 /// The brackets and classes of tiles.
-fn tile_source(density: TextureFormat, settings: &Settings) -> ShaderSource {
-    let source = define_classes(ShaderSource::new(TILE));
+fn tile_source(density: TextureFormat, settings: &Settings, before: Before) -> ShaderSource {
+    let source = define_classes(ShaderSource::new(TILE))
+        .define_if(settings.masked, "MASKED")
+        .define_if(before != Before::Nothing, "CHANGED")
+        .define_if(before == Before::Added, "ONLY_ADDED");
     of_block(source, density, settings, TILE_SIDE).file(glsl!("bracket/tile.frag"))
 }
 
@@ -238,9 +301,16 @@ fn pixel_sources(density: TextureFormat, settings: &Settings) -> Vec<(Class, Sha
                 Settings { search, ..*settings }
             }
             Class::Inner => without_edges(settings),
-            Class::Unreached | Class::Edge => *settings,
+            Class::Unreached | Class::Edge | Class::Kept => *settings,
         };
-        let source = search_source(density, &settings, super::Continued::No);
+        let source = match class {
+            Class::Unreached => ShaderSource::new(UNREACHED)
+                .define_if(settings.limited_mask, "LIMITED_MASK")
+                .define_if(settings.masked, "MASKED")
+                .file(glsl!("common/mask.glsl"))
+                .file(glsl!("bracket/unreached.frag")),
+            _ => search_source(density, &settings, super::Continued::No),
+        };
         let source = class
             .define(source)
             .define("TILE_SIDE", TILE_SIDE)
@@ -249,7 +319,7 @@ fn pixel_sources(density: TextureFormat, settings: &Settings) -> Vec<(Class, Sha
             .vertex_stage([glsl!("common/tiles.vert")]);
         (class, source)
     };
-    let classes = [Class::Dense, Class::Inner, Class::Edge].into_iter();
+    let classes = [Class::Unreached, Class::Dense, Class::Inner, Class::Edge].into_iter();
     classes.filter(|class| class.occurs(settings)).map(of_class).collect()
 }
 

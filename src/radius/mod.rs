@@ -1,6 +1,7 @@
 //! The search: density map and structure in, radius map out (thesis 3.5).
 
 mod bracketed;
+mod mask_tiles;
 mod stepwise;
 
 use std::ops::RangeInclusive;
@@ -9,8 +10,9 @@ use glam::UVec2;
 
 use crate::error::Result;
 use crate::exactness;
+use crate::frame::Frame;
 use crate::gl::{Gl, Pass, Program, ShaderSource, TextureFormat, glsl};
-use crate::maps::{DensityMap, RadiusMap};
+use crate::maps::RadiusMap;
 use crate::settings::{Edges, Method, Order, Settings};
 use crate::structure::{self, Structure};
 
@@ -46,11 +48,11 @@ impl RadiusSearch {
         Ok(Self { order, radii: RadiusMap::new(gl, size, settings.limited_mask)? })
     }
 
-    /// Searches every pixel.
-    pub(crate) fn estimate(&mut self, density: &DensityMap, structure: &Structure) -> Result<()> {
+    /// Searches the pixels whose radius can differ from what the map holds.
+    pub(crate) fn estimate(&mut self, frame: &Frame<'_>, structure: &Structure) -> Result<()> {
         match &mut self.order {
-            Ordered::Stepwise(stepwise) => stepwise.estimate(density, structure, &mut self.radii),
-            Ordered::Bracketed(bracketed) => bracketed.estimate(density, structure, &mut self.radii),
+            Ordered::Stepwise(stepwise) => stepwise.estimate(frame, structure, &mut self.radii),
+            Ordered::Bracketed(bracketed) => bracketed.estimate(frame, structure, &mut self.radii),
         }
     }
 
@@ -63,14 +65,22 @@ impl RadiusSearch {
 fn of_pixels<'a>(
     settings: &Settings,
     program: &'a Program,
-    density: &'a DensityMap,
+    frame: &Frame<'a>,
     structure: &'a Structure,
 ) -> Pass<'a> {
     let pass = Pass::new(SEARCH, program)
-        .set("map_size", density.size().as_ivec2())
+        .set("map_size", frame.density.size().as_ivec2())
         .set("min_photons", settings.search.min_photons)
         .set("max_radius", settings.search.max_radius.cast_signed());
-    structure.read_by(pass, density)
+    of_mask(structure.read_by(pass, frame.density), frame)
+}
+
+/// Adds the frame's mask, if it has one.
+fn of_mask<'a>(pass: Pass<'a>, frame: &Frame<'a>) -> Pass<'a> {
+    match frame.mask {
+        Some(mask) => pass.read("mask", mask.texture()),
+        None => pass,
+    }
 }
 
 /// Whether a search goes on where an earlier pass found nothing.
@@ -99,13 +109,14 @@ fn search_source(density: TextureFormat, settings: &Settings, continued: Continu
         .define_if(settings.faults.float_ratio, "FAULT_FLOAT_RATIO")
         .define_if(exactness::needs_wide_products(settings), "WIDE_PRODUCTS")
         .define_if(settings.limited_mask, "LIMITED_MASK")
+        .define_if(settings.masked, "MASKED")
         .define_if(continued == Continued::Yes, "CONTINUED");
     let source = match settings.search.order {
         Order::Forward => source.define("ORDER_FORWARD", 1_u32),
         Order::Binary => source,
         Order::Bracketed => source.define("ORDER_BRACKETED", 1_u32),
     };
-    let source = source.file(glsl!("common/enough.glsl"));
+    let source = source.file(glsl!("common/mask.glsl")).file(glsl!("common/enough.glsl"));
     structure::counter(source, density, settings).file(match settings.method {
         Method::NaiveMipmap => glsl!("naive_mipmap.frag"),
         _ => glsl!("radius.frag"),

@@ -6,8 +6,9 @@ use glam::UVec2;
 
 use super::{Continued, of_pixels, search_source};
 use crate::error::Result;
+use crate::frame::{Changed, Frame, Rectangle};
 use crate::gl::{Gl, Pass, Program, TextureFormat};
-use crate::maps::{DensityMap, RadiusMap};
+use crate::maps::RadiusMap;
 use crate::settings::{Method, Order, Settings};
 use crate::structure::Structure;
 
@@ -42,16 +43,29 @@ impl Stepwise {
 
     pub(super) fn estimate(
         &mut self,
-        density: &DensityMap,
+        frame: &Frame<'_>,
         structure: &Structure,
         found: &mut RadiusMap,
     ) -> Result<()> {
         let settings = &self.settings;
-        let trying = |program, radii| of_radii(settings, program, radii, density, structure);
-        trying(&self.program, &self.passes[0]).fill(found.target())?;
+        let map_size = frame.density.size();
+        let region = match frame.changed {
+            // Two maps take turns where there are several passes, so that neither holds what did not change.
+            Changed::Rectangle { first, size } if self.continued.is_none() => {
+                Rectangle::inside(map_size, first, size)
+                    .map(|changed| changed.grown(settings.search.max_radius, map_size))
+            }
+            _ => Some(Rectangle::whole(map_size)),
+        };
+        let Some(region) = region else { return Ok(()) };
+        of_radii(settings, &self.program, &self.passes[0], frame, structure).fill_between(
+            region.first,
+            region.end,
+            found.target(),
+        )?;
         if let Some((program, spare)) = &mut self.continued {
             for radii in &self.passes[1..] {
-                let pass = of_radii(settings, program, radii, density, structure);
+                let pass = of_radii(settings, program, radii, frame, structure);
                 pass.read("found_before", found.as_texture()).fill(spare.target())?;
                 std::mem::swap(found, spare);
             }
@@ -65,10 +79,10 @@ fn of_radii<'a>(
     settings: &Settings,
     program: &'a Program,
     radii: &RangeInclusive<u32>,
-    density: &'a DensityMap,
+    frame: &Frame<'a>,
     structure: &'a Structure,
 ) -> Pass<'a> {
-    let pass = of_pixels(settings, program, density, structure);
+    let pass = of_pixels(settings, program, frame, structure);
     if settings.search.order == Order::Forward && settings.method != Method::NaiveMipmap {
         pass.set("first_radius", radii.start().cast_signed()).set("last_radius", radii.end().cast_signed())
     } else {

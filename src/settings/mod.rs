@@ -277,6 +277,9 @@ pub struct Settings {
     pub exactness: Exactness,
     /// Whether the pixels that found too few photons within MR are marked in a second plane.
     pub limited_mask: bool,
+    /// Whether each frame comes with a [`Mask`](crate::Mask) of the pixels that need a radius.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "std::ops::Not::not"))]
+    pub masked: bool,
 }
 
 impl Default for Settings {
@@ -294,6 +297,7 @@ impl Default for Settings {
             faults: Faults::NONE,
             exactness: Exactness::Required,
             limited_mask: false,
+            masked: false,
         }
     }
 }

@@ -28,8 +28,9 @@ mod summed_area_table;
 
 use glam::UVec2;
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::exactness::Plan;
+use crate::frame::Rectangle;
 use crate::gl::{Gl, Pass, ShaderSource, TextureFormat};
 use crate::maps::DensityMap;
 use crate::settings::{Method, Settings, Storage};
@@ -61,15 +62,30 @@ impl Structure {
         })
     }
 
-    /// Fills the structure from a density map.
-    pub(crate) fn build(&mut self, density: &DensityMap, plan: Plan) -> Result<()> {
+    /// Fills the structure from a density map, of which `changed` differs from the one before.
+    pub(crate) fn build(&mut self, density: &DensityMap, plan: Plan, changed: Rectangle) -> Result<()> {
         match self {
             Self::BruteForce(brute_force) => {
                 brute_force.take(plan);
                 Ok(())
             }
             Self::Mipmap(mipmap) => mipmap.build(density, plan),
-            Self::SummedAreaTable(table) => table.build(density, plan),
+            Self::SummedAreaTable(table) => table.build(density, plan, changed),
+        }
+    }
+
+    /// Adds the photons of a density map to those that are there.
+    ///
+    /// # Errors
+    /// [`Error::Setting`] for a method without a table.
+    pub(crate) fn add(&mut self, density: &DensityMap, plan: Plan) -> Result<()> {
+        match self {
+            Self::SummedAreaTable(table) => table.add(density, plan),
+            Self::BruteForce(_) | Self::Mipmap(_) => Err(Error::Setting {
+                name: "method",
+                value: "without a summed-area table".to_owned(),
+                reason: "photons can be added to a table only; give the map of all photons".to_owned(),
+            }),
         }
     }
 

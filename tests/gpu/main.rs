@@ -5,6 +5,7 @@
 mod approximate;
 mod exactness;
 mod faults;
+mod frames;
 mod host;
 mod objects;
 mod radius;

@@ -20,16 +20,29 @@ use glam::UVec2;
 
 use crate::error::Result;
 use crate::exactness::Plan;
-use crate::gl::{Gl, Pass, ShaderSource, Target, Texture, TextureFormat, glsl};
+use crate::frame::Rectangle;
+use crate::gl::{Gl, Pass, Program, ShaderSource, Target, Texture, TextureFormat, glsl};
 use crate::maps::DensityMap;
 use crate::settings::{SatBuild, Settings, Variation};
+
+const ADDITION: &str = "sat addition";
 
 /// A table and what fills it.
 #[derive(Debug)]
 pub(crate) struct SummedAreaTable {
     table: Target,
     build: Build,
+    /// What adding photons needs, from the first time on.
+    addition: Option<Addition>,
     settings: Settings,
+}
+
+/// A table of added photons, and one that takes turns with that of all.
+#[derive(Debug)]
+struct Addition {
+    program: Program,
+    added: Target,
+    spare: Target,
 }
 
 #[derive(Debug)]
@@ -49,15 +62,36 @@ impl SummedAreaTable {
                 }
                 SatBuild::Scan => Build::Scan(Box::new(scan::Scan::new(gl, size, density, settings)?)),
             },
+            addition: None,
             settings: *settings,
         })
     }
 
-    pub(super) fn build(&mut self, density: &DensityMap, plan: Plan) -> Result<()> {
-        match &mut self.build {
-            Build::Doubling(doubling) => doubling.build(density, plan, &mut self.table),
-            Build::Scan(scan) => scan.build(density, plan, &mut self.table),
+    /// Fills the table from a density map, of which `changed` differs from the one before.
+    pub(super) fn build(&mut self, density: &DensityMap, plan: Plan, changed: Rectangle) -> Result<()> {
+        self.build.fill(density, plan, changed, &mut self.table)
+    }
+
+    /// Adds the photons of a density map to those of the table: the table of a sum is the sum of the tables.
+    pub(super) fn add(&mut self, density: &DensityMap, plan: Plan) -> Result<()> {
+        if self.addition.is_none() {
+            let table = self.table.texture();
+            let target =
+                || Target::single(table.gl(), Texture::new(table.gl(), table.format(), table.size(), 1)?);
+            self.addition = Some(Addition {
+                program: Program::new(table.gl(), &addition_source(&self.settings))?,
+                added: target()?,
+                spare: target()?,
+            });
         }
+        let Some(Addition { program, added, spare }) = &mut self.addition else { return Ok(()) };
+        self.build.fill(density, plan, Rectangle::whole(density.size()), added)?;
+        Pass::new(ADDITION, program)
+            .read("before", self.table.texture())
+            .read("added", added.texture())
+            .fill(spare)?;
+        std::mem::swap(&mut self.table, spare);
+        Ok(())
     }
 
     pub(super) fn read_by<'a>(&'a self, pass: Pass<'a>) -> Pass<'a> {
@@ -70,11 +104,33 @@ impl SummedAreaTable {
     }
 }
 
+impl Build {
+    fn fill(
+        &mut self,
+        density: &DensityMap,
+        plan: Plan,
+        changed: Rectangle,
+        table: &mut Target,
+    ) -> Result<()> {
+        match self {
+            // Two textures take turns, so that neither holds what did not change.
+            Self::Doubling(doubling) => doubling.build(density, plan, table),
+            Self::Scan(scan) => scan.build(density, plan, changed, table),
+        }
+    }
+}
+
 pub(super) fn build_sources(density: TextureFormat, settings: &Settings) -> Vec<ShaderSource> {
-    match settings.sat_build {
+    let mut sources = match settings.sat_build {
         SatBuild::Doubling => doubling::sources(density, settings),
         SatBuild::Scan => scan::sources(density, settings),
-    }
+    };
+    sources.push(addition_source(settings));
+    sources
+}
+
+fn addition_source(settings: &Settings) -> ShaderSource {
+    super::number(ShaderSource::new(ADDITION), settings).file(glsl!("build/add_tables.frag"))
 }
 
 pub(super) fn counter(source: ShaderSource, settings: &Settings) -> ShaderSource {

@@ -16,10 +16,13 @@
 //! After Harris, Sengupta and Owens, "Parallel Prefix Sum (Scan) with CUDA" (GPU Gems 3, chapter 39), with draw buffers
 //! in the place of shared memory.
 
+use std::ops::Range;
+
 use glam::UVec2;
 
 use crate::error::Result;
 use crate::exactness::Plan;
+use crate::frame::Rectangle;
 use crate::gl::{Gl, Pass, Program, ShaderSource, Target, Texture, TextureFormat, glsl};
 use crate::maps::DensityMap;
 use crate::settings::Settings;
@@ -58,19 +61,34 @@ impl Scan {
         })
     }
 
-    /// Fills `table` from a density map.
-    pub(super) fn build(&mut self, density: &DensityMap, plan: Plan, table: &mut Target) -> Result<()> {
+    /// Fills `table` from a density map, of which `changed` differs from the one before.
+    ///
+    /// Of the sums between, those of the changed tiles and of the lines through them are made anew; of the entries, those
+    /// from the first changed one on to the right and above.
+    pub(super) fn build(
+        &mut self,
+        density: &DensityMap,
+        plan: Plan,
+        changed: Rectangle,
+        table: &mut Target,
+    ) -> Result<()> {
         let Self { tile_sums, rows, columns, tiles, unpack } = self;
-        of_map(Pass::new(TILE_SUMS, &tile_sums.program), density, plan).fill(&mut tile_sums.target)?;
+        let (first, end) = (changed.first / TILE, (changed.end + TILE - 1) / TILE);
+        of_map(Pass::new(TILE_SUMS, &tile_sums.program), density, plan).fill_between(
+            first,
+            end,
+            &mut tile_sums.target,
+        )?;
         let sums = tile_sums.target.texture();
-        rows.scan(&[("tile_sums", sums)])?;
+        rows.scan(2 * first.y..2 * end.y, &[("tile_sums", sums)])?;
         let rows_before = rows.elements_before.target.texture();
-        columns.scan(&[("tile_sums", sums), ("rows_before", rows_before)])?;
+        let grid = tile_sums.target.size();
+        columns.scan(first.x..grid.x, &[("tile_sums", sums), ("rows_before", rows_before)])?;
         of_map(Pass::new(TILES, &tiles.program), density, plan)
             .read("rows_before", rows_before)
             .read("columns_before", columns.elements_before.target.texture())
-            .fill(&mut tiles.target)?;
-        Pass::new(UNPACK, unpack).read("tiles", tiles.target.texture()).fill(table)
+            .fill_from(first, &mut tiles.target)?;
+        Pass::new(UNPACK, unpack).read("tiles", tiles.target.texture()).fill_from(changed.first, table)
     }
 }
 
@@ -105,9 +123,20 @@ enum Axis {
     Columns,
 }
 
+impl Axis {
+    /// The texel of something `along` the axis, in a line `across` it.
+    fn place(self, along: u32, across: u32) -> UVec2 {
+        match self {
+            Self::Rows => UVec2::new(along, across),
+            Self::Columns => UVec2::new(across, along),
+        }
+    }
+}
+
 /// The scan of what tiles hold along one axis: four sums an element.
 #[derive(Debug)]
 struct Direction {
+    axis: Axis,
     elements: u32,
     group_size: u32,
     group_sums: Stage,
@@ -122,14 +151,12 @@ impl Direction {
             Axis::Rows => (grid.x, 2 * grid.y),
             Axis::Columns => (grid.y, grid.x),
         };
-        let place = |along: u32| match axis {
-            Axis::Rows => UVec2::new(along, lines),
-            Axis::Columns => UVec2::new(lines, along),
-        };
+        let place = |along: u32| axis.place(along, lines);
         let [group_sums, elements_before] = scan_sources(axis);
         // As many groups as elements in a group, or nearly: a run then adds fewest of both.
         let group_size = elements.isqrt().next_multiple_of(RUN);
         Ok(Self {
+            axis,
             elements,
             group_size,
             group_sums: Stage::new(gl, &group_sums, place(elements.div_ceil(group_size)), None)?,
@@ -137,15 +164,21 @@ impl Direction {
         })
     }
 
-    /// Sums all elements before each, read from `inputs`.
-    fn scan(&mut self, inputs: &[(&'static str, &Texture)]) -> Result<()> {
-        let Self { elements, group_size, group_sums, elements_before } = self;
+    /// Sums all elements before each in some of the lines, read from `inputs`.
+    fn scan(&mut self, lines: Range<u32>, inputs: &[(&'static str, &Texture)]) -> Result<()> {
+        let Self { axis, elements, group_size, group_sums, elements_before } = self;
+        let first = axis.place(0, lines.start);
+        let end = |along: u32| axis.place(along, lines.end);
+        let (groups, runs) = (elements.div_ceil(*group_size), elements.div_ceil(RUN));
         let counts = (elements.cast_signed(), group_size.cast_signed());
-        of_elements(Pass::new(GROUP_SUMS, &group_sums.program), inputs, counts)
-            .fill(&mut group_sums.target)?;
+        of_elements(Pass::new(GROUP_SUMS, &group_sums.program), inputs, counts).fill_between(
+            first,
+            end(groups),
+            &mut group_sums.target,
+        )?;
         of_elements(Pass::new(ELEMENTS_BEFORE, &elements_before.program), inputs, counts)
             .read("group_sums", group_sums.target.texture())
-            .fill(&mut elements_before.target)
+            .fill_between(first, end(runs), &mut elements_before.target)
     }
 }
 

@@ -1,0 +1,14 @@
+// Pixels that need no radius are 0 in the mask, and get 0, which no other pixel has.
+#ifdef MASKED
+uniform usampler2D mask;
+
+bool needs_none(ivec2 pixel)
+{
+    return texelFetch(mask, pixel, 0).r == 0u;
+}
+#else
+bool needs_none(ivec2 pixel)
+{
+    return false;
+}
+#endif

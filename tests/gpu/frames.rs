@@ -1,0 +1,214 @@
+//! Frames that follow each other: masks, changes in a rectangle, added photons. Every radius equals the definition's.
+
+use glam::UVec2;
+use varikernel::settings::{Edges, Method, Order, SatBuild, Search, Settings};
+use varikernel::{
+    Changed, CountBounds, DensityMap, Error, Frame, Gl, Image, Mask, RadiusMap, RadiusPipeline, reference,
+};
+
+use crate::support::{
+    Random, assert_same, egl, exact_variants, osmesa, random_map, search, sparse_map, spike,
+};
+
+fn read(radii: &RadiusMap) -> reference::Radii {
+    reference::Radii { radius: radii.read().unwrap(), limited: radii.read_limited().unwrap().unwrap() }
+}
+
+fn upload(gl: &Gl, counts: &Image<u32>, search: Search) -> DensityMap {
+    DensityMap::upload(gl, counts, CountBounds::of(counts, search)).unwrap()
+}
+
+/// The usual table and its bracketed search, with the limited pixels.
+fn fast(search: Search) -> Settings {
+    let search = Search { order: Order::Bracketed, ..search };
+    Settings { search, limited_mask: true, ..Settings::default() }
+}
+
+/// The fast path, the thesis's table, and a method without one.
+fn variants(search: Search) -> [Settings; 4] {
+    let fast = fast(search);
+    let binary = Settings { search: Search { order: Order::Binary, ..search }, ..fast };
+    [
+        fast,
+        binary,
+        Settings { sat_build: SatBuild::Doubling, ..fast },
+        Settings { method: Method::BruteForce, search: Search { order: Order::Forward, ..search }, ..fast },
+    ]
+}
+
+fn masked(radii: &reference::Radii, mask: &Image<u8>) -> reference::Radii {
+    let (radius, limited) = (&radii.radius, &radii.limited);
+    let needed = |x, y| mask.at(x, y) != 0;
+    reference::Radii {
+        radius: Image::from_fn(radius.size(), |x, y| if needed(x, y) { radius.at(x, y) } else { 0 }),
+        limited: Image::from_fn(radius.size(), |x, y| if needed(x, y) { limited.at(x, y) } else { 0 }),
+    }
+}
+
+#[test]
+fn masked_pixels_get_zero_and_all_others_their_radius() {
+    for open in [egl, osmesa] {
+        let gl = open();
+        for density in [random_map(1, 1, 4), sparse_map(150, 91), spike(70, 131)] {
+            let size = density.size();
+            let mut random = Random(7);
+            let masks = [
+                Image::filled(size, 0_u8),
+                Image::filled(size, 255),
+                Image::from_fn(size, |x, _| u8::from(x < size.x / 2)),
+                // Whole tiles without a pixel, and a last one with a single pixel.
+                Image::from_fn(size, |x, y| u8::from((x, y) == (size.x - 1, size.y - 1))),
+                Image::from_fn(size, |_, _| u8::from(random.below(2) == 0)),
+            ];
+            for edges in [Edges::Zero, Edges::Scale] {
+                let search = search(9, 12, edges);
+                let expected = reference::radius_by_table(&density, search);
+                for settings in exact_variants(search) {
+                    let map = upload(&gl, &density, settings.search);
+                    let settings = Settings { masked: true, ..settings };
+                    let mut pipeline = RadiusPipeline::new(&gl, size, map.format(), settings).unwrap();
+                    for mask in &masks {
+                        let on_gpu = Mask::upload(&gl, mask).unwrap();
+                        let frame = Frame { mask: Some(&on_gpu), ..Frame::new(&map) };
+                        match pipeline.update(&frame) {
+                            Ok(radii) => {
+                                let context = format!("{size} {settings:?}");
+                                assert_same(&read(radii), &masked(&expected, mask), &context);
+                            }
+                            // f32 beside the spike.
+                            Err(error) => assert!(matches!(error, Error::Inexact { .. }), "{error}"),
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_mask_is_asked_for_exactly_where_the_settings_say_so() {
+    let gl = egl();
+    let question = search(9, 12, Edges::Scale);
+    let map = upload(&gl, &random_map(8, 8, 4), question);
+    let mask = Mask::upload(&gl, &Image::filled(UVec2::new(8, 8), 1)).unwrap();
+    let large = Mask::upload(&gl, &Image::filled(UVec2::new(9, 8), 1)).unwrap();
+    let pipeline = |masked| {
+        let settings = Settings { masked, ..fast(question) };
+        RadiusPipeline::new(&gl, map.size(), map.format(), settings).unwrap()
+    };
+    let mismatch = |result: varikernel::Result<&RadiusMap>| match result {
+        Err(Error::Mismatch { what: "mask", .. }) => (),
+        other => panic!("{other:?}"),
+    };
+    mismatch(pipeline(false).update(&Frame { mask: Some(&mask), ..Frame::new(&map) }));
+    mismatch(pipeline(true).render(&map));
+    mismatch(pipeline(true).update(&Frame { mask: Some(&large), ..Frame::new(&map) }));
+    pipeline(true).update(&Frame { mask: Some(&mask), ..Frame::new(&map) }).unwrap();
+}
+
+/// Random counts in a random rectangle, which is returned.
+fn edit(map: &mut Image<u32>, random: &mut Random) -> Changed {
+    let size = map.size();
+    let first = UVec2::new(random.below(size.x), random.below(size.y));
+    let extent = UVec2::new(1 + random.below(40), 1 + random.below(40));
+    let end = (first + extent).min(size);
+    let most = [1, 2, 8, 100_000_000][random.below(4) as usize];
+    for y in first.y..end.y {
+        for x in first.x..end.x {
+            map.set(x, y, random.below(most));
+        }
+    }
+    // Past the map's end now and then, as hosts round up.
+    Changed::Rectangle { first, size: extent }
+}
+
+#[test]
+fn a_hundred_edits_in_rectangles_stay_exact() {
+    for (max_radius, edges) in [(9, Edges::Scale), (70, Edges::Scale), (70, Edges::Zero)] {
+        let gl = egl();
+        let question = search(25, max_radius, edges);
+        let mut counts = sparse_map(233, 150);
+        for settings in variants(question) {
+            if settings.method == Method::BruteForce && max_radius > 9 {
+                continue;
+            }
+            let search = settings.search;
+            let mut random = Random(u64::from(max_radius));
+            let mut map = upload(&gl, &counts, search);
+            let mut pipeline = RadiusPipeline::new(&gl, counts.size(), map.format(), settings).unwrap();
+            pipeline.render(&map).unwrap();
+            for number in 0..100 {
+                let changed = edit(&mut counts, &mut random);
+                map.replace(&counts, CountBounds::of(&counts, search)).unwrap();
+                let radii = pipeline.update(&Frame { changed, ..Frame::new(&map) }).unwrap();
+                let expected = reference::radius_by_table(&counts, search);
+                assert_same(&read(radii), &expected, &format!("edit {number}: {changed:?}, {settings:?}"));
+            }
+        }
+    }
+}
+
+#[test]
+fn what_the_host_does_not_tell_is_not_seen() {
+    let gl = egl();
+    let question = fast(search(25, 9, Edges::Scale)).search;
+    let before = sparse_map(233, 150);
+    let mut after = before.clone();
+    after.set(10, 10, 1000);
+    let mut map = upload(&gl, &before, question);
+    let mut pipeline = RadiusPipeline::new(&gl, map.size(), map.format(), fast(question)).unwrap();
+    pipeline.render(&map).unwrap();
+    map.replace(&after, CountBounds::of(&after, question)).unwrap();
+    let old = reference::radius_by_table(&before, question);
+    let elsewhere = Changed::Rectangle { first: UVec2::new(200, 100), size: UVec2::new(4, 4) };
+    for changed in [Changed::Nothing, elsewhere] {
+        let radii = pipeline.update(&Frame { changed, ..Frame::new(&map) }).unwrap();
+        assert_same(&read(radii), &old, "a frame that is said to have no change there");
+    }
+    // The same frame, told rightly.
+    let changed = Changed::Rectangle { first: UVec2::new(10, 10), size: UVec2::ONE };
+    let radii = pipeline.update(&Frame { changed, ..Frame::new(&map) }).unwrap();
+    assert_same(&read(radii), &reference::radius_by_table(&after, question), "the change told");
+}
+
+#[test]
+fn added_photons_are_those_of_one_map_with_all() {
+    let gl = egl();
+    for edges in [Edges::Zero, Edges::Scale] {
+        for settings in variants(search(40, 30, edges)) {
+            let search = settings.search;
+            let mut total = sparse_map(233, 150);
+            let mut map = upload(&gl, &total, search);
+            let mut pipeline = RadiusPipeline::new(&gl, map.size(), map.format(), settings).unwrap();
+            pipeline.render(&map).unwrap();
+            for number in 0..6 {
+                // Photons in a part of the map, so that some tiles are untouched.
+                let mut random = Random(number);
+                let more = Image::from_fn(total.size(), |x, y| {
+                    if x / 64 == u32::try_from(number % 4).unwrap() && y > 20 { random.below(3) } else { 0 }
+                });
+                map.replace(&more, CountBounds::of(&more, search)).unwrap();
+                let added = pipeline.update(&Frame { changed: Changed::Added, ..Frame::new(&map) });
+                if settings.method != Method::SummedAreaTable {
+                    assert!(matches!(added, Err(Error::Setting { name: "method", .. })), "{added:?}");
+                    break;
+                }
+                total = Image::from_fn(total.size(), |x, y| total.at(x, y) + more.at(x, y));
+                let expected = reference::radius_by_table(&total, search);
+                assert_same(&read(added.unwrap()), &expected, &format!("addition {number} {settings:?}"));
+            }
+        }
+    }
+}
+
+#[test]
+fn additions_past_what_sums_hold_are_refused() {
+    let gl = egl();
+    let question = fast(search(25, 9, Edges::Zero)).search;
+    let half = Image::filled(UVec2::new(40, 40), 4_000_000_000 / 1600);
+    let map = upload(&gl, &half, question);
+    let mut pipeline = RadiusPipeline::new(&gl, map.size(), map.format(), fast(question)).unwrap();
+    pipeline.render(&map).unwrap();
+    let added = pipeline.update(&Frame { changed: Changed::Added, ..Frame::new(&map) });
+    assert!(matches!(added, Err(Error::Inexact { .. })), "{added:?}");
+}
