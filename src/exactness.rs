@@ -16,7 +16,7 @@ use glam::UVec2;
 
 use crate::error::{Error, Result};
 use crate::image::Image;
-use crate::settings::{Exactness, Faults, Method, Search, Settings, Storage};
+use crate::settings::{Exactness, Faults, Method, Order, Search, Settings, Storage};
 
 /// Upper bounds for the sums in a density map, and the question that they were found for; what is not known is
 /// [`u64::MAX`].
@@ -147,7 +147,12 @@ pub fn plan(settings: &Settings, size: UVec2, bounds: CountBounds) -> Result<Pla
                         search.max_radius,
                         known(clamped_box.min(densest_box))
                     ),
-                    "lower n or MR, or scale the counts down",
+                    match search.order {
+                        Order::Bracketed => {
+                            "search in binary order, whose boxes are smaller, or lower n or MR"
+                        }
+                        _ => "lower n or MR, or scale the counts down",
+                    },
                 )
             }
         }

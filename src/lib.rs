@@ -82,6 +82,7 @@
 //! | limited | a pixel whose box of radius MR still holds too few |
 //! | SAT | summed-area table |
 
+mod adaptive;
 #[cfg(any(feature = "egl", feature = "osmesa"))]
 pub mod context;
 mod driver_limits;
@@ -93,6 +94,7 @@ pub mod image;
 pub mod maps;
 pub mod measure;
 pub mod pipeline;
+pub mod planner;
 mod radius;
 pub mod reference;
 pub mod settings;
@@ -102,6 +104,7 @@ pub mod synth;
 
 pub use {glam, glow};
 
+pub use adaptive::AdaptivePipeline;
 pub use error::{Error, Result};
 pub use exactness::CountBounds;
 pub use frame::{Changed, Frame};

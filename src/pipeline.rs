@@ -9,7 +9,7 @@ use crate::frame::{Changed, Frame, Rectangle};
 use crate::gl::{Gl, ShaderSource, StateGuard, TextureFormat};
 use crate::maps::{DensityMap, Mask, RadiusMap};
 use crate::radius::{self, RadiusSearch};
-use crate::settings::Settings;
+use crate::settings::{Order, Search, Settings};
 use crate::structure::{self, Structure};
 
 /// Density map in, radius map out, for one size and one set of settings.
@@ -25,6 +25,8 @@ pub struct RadiusPipeline {
     density_format: TextureFormat,
     structure: Structure,
     search: RadiusSearch,
+    /// Searches of other orders, which [`set_order`](RadiusPipeline::set_order) left.
+    resting: Vec<(Order, RadiusSearch)>,
     /// What the structure holds, and whether the radii are those of it.
     built: Option<Built>,
     searched: bool,
@@ -39,6 +41,13 @@ struct Built {
     bounds: CountBounds,
     /// Whether photons were added to it, so that the map holds a part of them only.
     grown: bool,
+}
+
+impl Built {
+    /// Nothing was built, since there is no photon.
+    fn is_empty(&self) -> bool {
+        self.bounds.total == 0
+    }
 }
 
 impl RadiusPipeline {
@@ -69,6 +78,7 @@ impl RadiusPipeline {
             density_format,
             structure: Structure::new(gl, size, density_format, &settings)?,
             search: RadiusSearch::new(gl, size, density_format, &settings, passes)?,
+            resting: Vec::new(),
             built: None,
             searched: false,
         };
@@ -126,16 +136,20 @@ impl RadiusPipeline {
             return Ok(self.search.radii());
         }
         self.check(frame)?;
-        if self.built.is_none_or(|built| built.map != frame.density.texture().name()) {
+        let Some(built) = self.built.filter(|built| built.map == frame.density.texture().name()) else {
             return Err(Error::Mismatch {
                 what: "density map of the search",
                 expected: "the one that was built last".to_owned(),
                 got: "another, or none was built".to_owned(),
             });
-        }
+        };
         let _state = StateGuard::new(&self.gl);
         self.searched = false;
-        self.search.estimate(frame, &self.structure)?;
+        if built.is_empty() {
+            self.search.find_nothing(frame)?;
+        } else {
+            self.search.estimate(frame, &self.structure)?;
+        }
         self.gl.check("searching radii")?;
         self.searched = true;
         Ok(self.search.radii())
@@ -163,6 +177,8 @@ impl RadiusPipeline {
         let before = self.built.take();
         let whole = Rectangle::whole(self.size);
         match frame.changed {
+            // No box can hold a photon, so that none will be counted.
+            _ if bounds.total == 0 => (),
             Changed::Added if adds_to.is_some() => self.structure.add(density, plan)?,
             Changed::Rectangle { first, size } if before.is_some() => {
                 if let Some(changed) = Rectangle::inside(self.size, first, size) {
@@ -183,14 +199,51 @@ impl RadiusPipeline {
             && self.built.is_some_and(|built| match frame.changed {
                 Changed::Everything => false,
                 // The map of all photons was one, that of the added ones another or the same.
-                Changed::Added => true,
+                Changed::Added => !built.is_empty(),
                 Changed::Nothing => built.map == map,
                 Changed::Rectangle { .. } => {
                     let plan = exactness::plan(&self.settings, self.size, frame.density.bounds());
-                    built.map == map && !built.grown && plan.is_ok_and(|plan| plan == built.plan)
+                    built.map == map
+                        && !built.grown
+                        && !built.is_empty()
+                        && plan.is_ok_and(|plan| plan == built.plan)
                 }
             });
         Frame { changed: if continues { frame.changed } else { Changed::Everything }, ..*frame }
+    }
+
+    /// Searches in another order from now on; the first time, its programs are compiled and its map allocated.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new); the order stays as it was then.
+    pub fn set_order(&mut self, order: Order) -> Result<()> {
+        let old = self.settings.search.order;
+        if order == old {
+            return Ok(());
+        }
+        let settings = Settings { search: Search { order, ..self.settings.search }, ..self.settings };
+        let known = self.resting.iter().position(|(resting, _)| *resting == order);
+        let new = match known {
+            Some(index) => self.resting.swap_remove(index).1,
+            None => {
+                settings.validate()?;
+                let passes = driver_limits::passes(self.gl.info(), &settings)?;
+                let _state = StateGuard::new(&self.gl);
+                let search = RadiusSearch::new(&self.gl, self.size, self.density_format, &settings, passes)?;
+                self.gl.check("setting up a search")?;
+                search
+            }
+        };
+        self.resting.push((old, std::mem::replace(&mut self.search, new)));
+        self.settings = settings;
+        // The map of this search is of an older frame.
+        self.searched = false;
+        Ok(())
+    }
+
+    /// What counters read.
+    pub(crate) fn structure(&self) -> &Structure {
+        &self.structure
     }
 
     /// What the last [`search`](Self::search) found, to be read after it was timed; undefined before the first.

@@ -5,17 +5,19 @@ mod report;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Result, anyhow, bail};
+use clap::ValueEnum as _;
 use varikernel::context::{self, DeviceChoice};
 use varikernel::gl::{self, DeviceInfo};
 use varikernel::image::{
     Attribute, Format, Picture, ReadOptions, check_writable, read_counts, write_counts, write_picture,
 };
 use varikernel::measure::{Difference, RadiusSummary, total_photons};
+use varikernel::planner::{self, Census, Choice};
 use varikernel::settings::{
     Edges, Exactness, Faults, Matching, Method, Order, SatBuild, SatSamples, Search, Settings, Split,
     Storage, Variation,
 };
-use varikernel::{CountBounds, DensityMap, Error, Image, RadiusPipeline, reference};
+use varikernel::{CountBounds, DensityMap, Error, Frame, Image, Mask, RadiusPipeline, reference};
 
 use super::{Outcome, output};
 use report::{MapReport, Report, Timing};
@@ -44,17 +46,20 @@ pub(crate) struct Args {
     #[arg(long, value_enum, default_value_t = Edges::Scale)]
     edges: Edges,
 
-    /// How photons in a box are counted (thesis 3.2 to 3.4).
-    #[arg(long, value_enum, default_value_t = Method::SummedAreaTable)]
-    method: Method,
+    /// How photons in a box are counted (thesis 3.2 to 3.4): auto lets a planner choose by the map, or name one of
+    /// brute-force, naive-mipmap, averaged-mipmap, pyramid, sat.
+    #[arg(long, default_value = "auto", value_parser = method, value_name = "METHOD")]
+    method: MethodChoice,
 
-    /// Order in which radii are tried (thesis 3.5); the naive mipmap has its own.
-    #[arg(long, value_enum, default_value_t = Order::Binary)]
-    search: Order,
+    /// Order in which radii are tried (thesis 3.5); the naive mipmap has its own. [default: the planner's; with a named
+    /// method, a fault or f32: bracketed for sat without them, else binary]
+    #[arg(long, value_enum)]
+    search: Option<Order>,
 
-    /// How the summed-area table is built: by doubling (thesis 4.2) or by a scan, which is for u32 and u16.
-    #[arg(long, value_enum, default_value_t = SatBuild::Scan, default_value_if("storage", "f32", "doubling"))]
-    sat_build: SatBuild,
+    /// How the summed-area table is built: by doubling (thesis 4.2) or by a scan. [default: scan; with a fault or f32:
+    /// doubling]
+    #[arg(long, value_enum)]
+    sat_build: Option<SatBuild>,
 
     /// Samples a pass when the summed-area table is built by doubling (thesis 4.2).
     #[arg(long, value_enum, default_value_t = SatSamples::Four)]
@@ -95,6 +100,10 @@ pub(crate) struct Args {
     /// Also write a map that is 1 where MR ended the search with too few photons, else 0.
     #[arg(long, value_name = "FILE")]
     limited_mask: Option<PathBuf>,
+
+    /// Map of the pixels that need a radius: those that are 0 in it get 0, and cost next to nothing.
+    #[arg(long, value_name = "FILE")]
+    mask: Option<PathBuf>,
 
     /// Channel to read if the EXR has several.
     #[arg(long, value_name = "NAME")]
@@ -150,12 +159,17 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     tracing::info!(renderer = gl.info().renderer, "opened");
     check_fits(args, &counts, gl.info())?;
 
+    let choice = planned(args, settings, &counts);
+    let settings = choice.as_ref().map_or(settings, |choice| choice.settings);
     let density = DensityMap::upload(&gl, &counts, CountBounds::of(&counts, settings.search))?;
     let mut pipeline =
         RadiusPipeline::new(&gl, counts.size(), density.format(), settings).map_err(explain)?;
     let plan = pipeline.plan(&density).map_err(explain)?;
+    let mask = args.mask.as_ref().map(|path| read_mask(path, &counts)).transpose()?;
+    let mask_on_gpu = mask.as_ref().map(|mask| Mask::upload(&gl, mask)).transpose()?;
+    let frame = Frame { mask: mask_on_gpu.as_ref(), ..Frame::new(&density) };
     let ((), build) = gl::time(&gl, || pipeline.build(&density))?;
-    let (radii, search) = gl::time(&gl, || pipeline.search(&density))?;
+    let (radii, search) = gl::time(&gl, || pipeline.search_frame(&frame))?;
     let radii = reference::Radii {
         radius: radii.read()?,
         limited: radii.read_limited()?.unwrap_or_else(|| unreachable!("the settings ask for the mask")),
@@ -163,6 +177,10 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
 
     let verify = if args.verify {
         let definition = reference::radius_by_table(&counts, settings.search);
+        let definition = match &mask {
+            Some(mask) => definition.where_needed(mask),
+            None => definition,
+        };
         Some((
             Difference::between(&radii.radius, &definition.radius)?,
             Difference::between(&radii.limited, &definition.limited)?,
@@ -190,6 +208,7 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
         output: &args.output,
         limited_mask: args.limited_mask.as_deref(),
         settings,
+        planned: choice.as_ref().map(|choice| choice.reason.as_str()),
         device: gl.info(),
         plan,
         radius: RadiusSummary::of(&radii),
@@ -205,6 +224,34 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     let mut differences = [&report.verify, &report.verify_limited].into_iter().flatten();
     let differs = differences.any(|difference| !difference.is_none());
     Ok(if differs { Outcome::Differs } else { Outcome::Done })
+}
+
+/// The planner's choice, where nothing else is asked for.
+fn planned(args: &Args, settings: Settings, counts: &Image<u32>) -> Option<Choice> {
+    let is_free = matches!(args.method, MethodChoice::Auto)
+        && (args.search, args.sat_build, args.variation) == (None, None, None)
+        && settings.faults == Faults::NONE
+        && settings.storage == Storage::U32;
+    is_free.then(|| {
+        let bounds = CountBounds::of(counts, settings.search);
+        planner::choose(&settings, counts.size(), Some(&Census::of(counts)), bounds)
+    })
+}
+
+/// A mask of the map's size, 1 where a radius is needed.
+fn read_mask(path: &Path, counts: &Image<u32>) -> Result<Image<u8>> {
+    let mask = read_counts(path, &ReadOptions::default())?;
+    if mask.size() != counts.size() {
+        bail!(
+            "{}: the mask is {} x {} pixels, and the map {} x {}\nhelp: give one of the map's size",
+            path.display(),
+            mask.size().x,
+            mask.size().y,
+            counts.size().x,
+            counts.size().y
+        );
+    }
+    Ok(mask.map(|value| u8::from(value != 0)))
 }
 
 fn whole_number(text: &str) -> Result<u32, String> {
@@ -264,25 +311,51 @@ fn check_fits(args: &Args, counts: &Image<u32>, device: &DeviceInfo) -> Result<(
     Ok(())
 }
 
+/// A method, or the planner's choice.
+#[derive(Clone, Copy, Debug)]
+enum MethodChoice {
+    Auto,
+    Named(Method),
+}
+
+fn method(text: &str) -> Result<MethodChoice, String> {
+    if text == "auto" {
+        return Ok(MethodChoice::Auto);
+    }
+    Method::from_str(text, false)
+        .map(MethodChoice::Named)
+        .map_err(|_| "give auto, brute-force, naive-mipmap, averaged-mipmap, pyramid or sat".to_owned())
+}
+
+/// What the arguments ask for; where the planner may choose, its choice without a map.
 fn settings(args: &Args) -> Settings {
+    let method = match args.method {
+        MethodChoice::Auto => Method::SummedAreaTable,
+        MethodChoice::Named(method) => method,
+    };
+    let faults = faults(args);
+    // The thesis's listings know neither a scan nor brackets, which are for whole numbers.
+    let is_ours = method == Method::SummedAreaTable && faults == Faults::NONE && args.storage != Storage::F32;
+    let (build, order) =
+        if is_ours { (SatBuild::Scan, Order::Bracketed) } else { (SatBuild::Doubling, Order::Binary) };
     Settings {
         search: Search {
             min_photons: args.min_photons,
             max_radius: args.max_radius,
             edges: args.edges,
-            order: args.search,
+            order: args.search.unwrap_or(order),
         },
-        method: args.method,
+        method,
         split: args.split,
         matching: args.matching,
-        sat_build: args.sat_build,
+        sat_build: args.sat_build.unwrap_or(build),
         sat_samples: args.sat_samples,
         storage: args.storage,
-        faults: faults(args),
+        faults,
         variation: args.variation,
         exactness: if args.allow_inexact { Exactness::Waived } else { Exactness::Required },
         limited_mask: true,
-        masked: false,
+        masked: args.mask.is_some(),
     }
 }
 

@@ -93,6 +93,14 @@ impl Target {
         }
     }
 
+    /// Binds level 0 as what glReadPixels reads.
+    pub(super) fn bind_for_reading(&self) {
+        // SAFETY: the context is current while the handle lives, and the framebuffer is complete.
+        unsafe {
+            self.gl.glow().bind_framebuffer(glow::READ_FRAMEBUFFER, Some(self.framebuffers[0]));
+        }
+    }
+
     pub(crate) fn size(&self) -> UVec2 {
         self.texture().size()
     }

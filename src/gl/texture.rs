@@ -38,7 +38,7 @@ impl TextureFormat {
         }
     }
 
-    fn transfer(self) -> (u32, u32) {
+    pub(super) fn transfer(self) -> (u32, u32) {
         match self {
             Self::R32Uint => (glow::RED_INTEGER, glow::UNSIGNED_INT),
             Self::R32Float => (glow::RED, glow::FLOAT),
@@ -52,7 +52,7 @@ impl TextureFormat {
         self == Self::R32Float
     }
 
-    fn texel_bytes(self) -> usize {
+    pub(super) fn texel_bytes(self) -> usize {
         match self {
             Self::R32Uint | Self::R32Float => 4,
             Self::R16Uint => 2,

@@ -26,7 +26,7 @@
 use glam::UVec2;
 
 use super::mask_tiles::{self, MaskTiles};
-use super::{of_mask, of_pixels, search_source};
+use super::{of_pixels, search_source, unreached};
 use crate::error::Result;
 use crate::exactness;
 use crate::frame::{Changed, Frame, Rectangle};
@@ -37,7 +37,6 @@ use crate::structure::{self, Structure};
 
 const TILE: &str = "radius tiles";
 const BLOCKS: &str = "radius blocks";
-const UNREACHED: &str = "radius unreached";
 
 /// Pixels of a tile's side.
 const TILE_SIDE: u32 = 64;
@@ -174,18 +173,17 @@ impl Bracketed {
             wider = target.texture();
         }
 
-        // One clear is cheaper than a draw, but takes no heed of what is kept.
+        // A clear takes no heed of what is kept.
         let clears = before == Before::Nothing && !self.settings.masked;
         if clears {
-            let unreached = [search.max_radius, 1];
-            radii.target().clear(&unreached[..=usize::from(self.settings.limited_mask)]);
+            unreached::clear(&self.settings, radii);
         }
         for (class, program) in &self.pixels {
             let pass = match class {
                 Class::Unreached if clears => continue,
-                Class::Unreached => of_mask(Pass::new(UNREACHED, program), frame)
-                    .set("map_size", map_size.as_ivec2())
-                    .set("max_radius", search.max_radius.cast_signed()),
+                Class::Unreached => {
+                    unreached::pass(&self.settings, program, frame).set("map_size", map_size.as_ivec2())
+                }
                 Class::Dense => of_pixels(&self.settings, program, frame, structure)
                     .set("first_radius", 1)
                     .set("last_radius", search.max_radius.cast_signed()),
@@ -304,11 +302,7 @@ fn pixel_sources(density: TextureFormat, settings: &Settings) -> Vec<(Class, Sha
             Class::Unreached | Class::Edge | Class::Kept => *settings,
         };
         let source = match class {
-            Class::Unreached => ShaderSource::new(UNREACHED)
-                .define_if(settings.limited_mask, "LIMITED_MASK")
-                .define_if(settings.masked, "MASKED")
-                .file(glsl!("common/mask.glsl"))
-                .file(glsl!("bracket/unreached.frag")),
+            Class::Unreached => unreached::source(&settings),
             _ => search_source(density, &settings, super::Continued::No),
         };
         let source = class

@@ -3,6 +3,7 @@
 mod bracketed;
 mod mask_tiles;
 mod stepwise;
+mod unreached;
 
 use std::ops::RangeInclusive;
 
@@ -23,6 +24,9 @@ const SEARCH: &str = "radius search";
 pub(crate) struct RadiusSearch {
     order: Ordered,
     radii: RadiusMap,
+    /// For maps without a photon.
+    unreached: Program,
+    settings: Settings,
 }
 
 #[derive(Debug)]
@@ -45,7 +49,12 @@ impl RadiusSearch {
             }
             Order::Bracketed => Ordered::Bracketed(bracketed::Bracketed::new(gl, size, density, settings)?),
         };
-        Ok(Self { order, radii: RadiusMap::new(gl, size, settings.limited_mask)? })
+        Ok(Self {
+            order,
+            radii: RadiusMap::new(gl, size, settings.limited_mask)?,
+            unreached: Program::new(gl, &unreached::source(settings))?,
+            settings: *settings,
+        })
     }
 
     /// Searches the pixels whose radius can differ from what the map holds.
@@ -54,6 +63,11 @@ impl RadiusSearch {
             Ordered::Stepwise(stepwise) => stepwise.estimate(frame, structure, &mut self.radii),
             Ordered::Bracketed(bracketed) => bracketed.estimate(frame, structure, &mut self.radii),
         }
+    }
+
+    /// Gives every pixel what it has where there is no photon.
+    pub(crate) fn find_nothing(&mut self, frame: &Frame<'_>) -> Result<()> {
+        unreached::fill(&self.settings, &self.unreached, frame, &mut self.radii)
     }
 
     pub(crate) fn radii(&self) -> &RadiusMap {
@@ -93,13 +107,15 @@ enum Continued {
 /// Every shader that a search of these settings may compile.
 pub(crate) fn search_sources(density: TextureFormat, settings: &Settings) -> Vec<ShaderSource> {
     let one_pass = search_source(density, settings, Continued::No);
-    match settings.search.order {
+    let mut sources = match settings.search.order {
         Order::Forward if settings.method != Method::NaiveMipmap => {
             vec![one_pass, search_source(density, settings, Continued::Yes)]
         }
         Order::Forward | Order::Binary => vec![one_pass],
         Order::Bracketed => bracketed::sources(density, settings),
-    }
+    };
+    sources.push(unreached::source(settings));
+    sources
 }
 
 /// One search and one counter.

@@ -27,6 +27,20 @@ pub struct Radii {
 }
 
 impl Radii {
+    /// The same where `mask` is not 0; elsewhere no radius is needed, which is 0 and not limited.
+    ///
+    /// # Panics
+    /// If the sizes differ.
+    #[must_use]
+    pub fn where_needed(&self, mask: &Image<u8>) -> Self {
+        assert_eq!(mask.size(), self.radius.size(), "mask and radii");
+        let needed = |x, y| mask.at(x, y) != 0;
+        Self {
+            radius: Image::from_fn(mask.size(), |x, y| if needed(x, y) { self.radius.at(x, y) } else { 0 }),
+            limited: Image::from_fn(mask.size(), |x, y| if needed(x, y) { self.limited.at(x, y) } else { 0 }),
+        }
+    }
+
     /// `found(x, y)` is the radius of each pixel, or nothing where even MR holds too few.
     fn from_fn(size: UVec2, max_radius: u32, found: impl Fn(u32, u32) -> Option<u32>) -> Self {
         let found = Image::from_fn(size, found);

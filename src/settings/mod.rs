@@ -303,6 +303,17 @@ impl Default for Settings {
 }
 
 impl Settings {
+    /// The usual settings of a method: [`Settings::default`] for the table; the others have no bracketed search.
+    #[must_use]
+    pub fn of(method: Method) -> Self {
+        let usual = Self::default();
+        let order = match method {
+            Method::SummedAreaTable => usual.search.order,
+            _ => Order::Binary,
+        };
+        Self { method, search: Search { order, ..usual.search }, ..usual }
+    }
+
     /// The thesis's fastest: a summed-area table in f32, 4 samples a pass, MR = 32 (Figure 5.1), n = 25 (Figure 3.2).
     #[must_use]
     pub fn thesis() -> Self {

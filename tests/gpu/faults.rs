@@ -1,7 +1,7 @@
 //! The listings as printed: each fault on the GPU is the fault that the reference predicts.
 
 use varikernel::measure::Difference;
-use varikernel::settings::{Edges, Faults, Method, Order, SatSamples, Search, Settings, Split};
+use varikernel::settings::{Edges, Faults, Method, Order, SatBuild, SatSamples, Search, Settings, Split};
 use varikernel::{Image, reference};
 
 use crate::support::{assert_same, egl, on_gpu, random_map, search, sparse_map};
@@ -41,8 +41,14 @@ fn every_fault_of_the_table_listings_is_the_predicted_one() {
                 (Order::Binary, Edges::Scale, SatSamples::Four),
             ] {
                 let search = Search { order, ..search(25, 16, edges) };
-                let settings =
-                    Settings { search, sat_samples, faults, limited_mask: true, ..Settings::default() };
+                let settings = Settings {
+                    search,
+                    sat_build: SatBuild::Doubling,
+                    sat_samples,
+                    faults,
+                    limited_mask: true,
+                    ..Settings::default()
+                };
                 let expected = reference::as_printed::radius(&density, search, sat_samples, faults);
                 assert_same(&on_gpu(&gl, &density, settings), &expected, &format!("{name}, {settings:?}"));
             }

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use glam::UVec2;
 use glow::HasContext as _;
 use varikernel::gl::TextureFormat;
-use varikernel::settings::{Edges, Method, Settings, Storage};
+use varikernel::settings::{Edges, Method, SatBuild, Settings, Storage};
 use varikernel::{CountBounds, DensityMap, Error, Gl, Image, RadiusPipeline, context, reference};
 
 use crate::support::{egl, osmesa, random_map, search, working_candidates};
@@ -81,7 +81,8 @@ fn textures_of_the_host_are_read_in_each_format() {
             for method in [Method::BruteForce, Method::Pyramid, Method::SummedAreaTable] {
                 for storage in [Storage::U32, Storage::F32] {
                     let search = search(25, 16, Edges::Scale);
-                    let settings = Settings { search, method, storage, ..Settings::default() };
+                    let sat_build = SatBuild::Doubling;
+                    let settings = Settings { search, method, storage, sat_build, ..Settings::default() };
                     let mut pipeline = RadiusPipeline::new(&gl, map.size(), map.format(), settings).unwrap();
                     let found = pipeline.render(&map).unwrap().read().unwrap();
                     assert_eq!(found, expected, "{format:?}, {method:?}, {storage:?}");
@@ -162,7 +163,7 @@ fn a_search_needs_the_map_that_was_built_last() {
     let map = |end| DensityMap::upload(&gl, &random_map(9, 7, end), CountBounds::UNKNOWN).unwrap();
     let (first, second) = (map(3), map(4));
     for method in Method::ALL {
-        let settings = Settings { method, ..Settings::default() };
+        let settings = Settings::of(method);
         let mut pipeline = RadiusPipeline::new(&gl, first.size(), first.format(), settings).unwrap();
         assert!(matches!(pipeline.search(&first), Err(Error::Mismatch { .. })), "nothing was built");
         pipeline.build(&first).unwrap();

@@ -180,7 +180,7 @@ fn every_object_is_freed_and_the_state_put_back_also_after_an_error() {
         let density = random_map(12, 19, 4);
         let map = DensityMap::upload(&gl, &density, CountBounds::UNKNOWN).unwrap();
         for method in Method::ALL {
-            let settings = Settings { method, limited_mask: true, ..Settings::default() };
+            let settings = Settings { limited_mask: true, ..Settings::of(method) };
             let mut pipeline = RadiusPipeline::new(&gl, map.size(), map.format(), settings).unwrap();
             pipeline.render(&map).unwrap().read().unwrap();
             let mut other = RadiusPipeline::new(&gl, UVec2::ONE, map.format(), settings).unwrap();
@@ -195,7 +195,7 @@ fn every_object_is_freed_and_the_state_put_back_also_after_an_error() {
         // SAFETY: the context is current.
         unsafe { gl.glow().viewport(viewport[0], viewport[1], viewport[2], viewport[3]) };
         for method in Method::ALL {
-            let settings = Settings { method, limited_mask: true, ..Settings::default() };
+            let settings = Settings { limited_mask: true, ..Settings::of(method) };
             let new = || RadiusPipeline::new(&gl, map.size(), map.format(), settings);
             let mut failures = 0;
             for call in 0.. {

@@ -11,9 +11,9 @@ use varikernel::gl::{ShaderSource, TextureFormat};
 use varikernel::measure::Unit;
 use varikernel::pipeline::shader_sources;
 use varikernel::settings::{
-    Edges, Faults, Matching, Method, Order, SatSamples, Search, Settings, Split, Storage, Variation,
+    Edges, Faults, Matching, Method, Order, SatBuild, SatSamples, Search, Settings, Split, Storage, Variation,
 };
-use varikernel::{CountBounds, DensityMap, Gl, RadiusPipeline, context, reference};
+use varikernel::{AdaptivePipeline, CountBounds, DensityMap, Gl, RadiusPipeline, context, reference};
 
 use crate::support::{random_map, search, working_candidates};
 
@@ -36,27 +36,38 @@ fn strict(candidate: &context::Candidate) -> Gl {
 fn all_settings() -> Vec<Settings> {
     let mut all = Vec::new();
     for method in Method::ALL {
-        for order in [Order::Forward, Order::Binary] {
+        for order in [Order::Forward, Order::Binary, Order::Bracketed] {
             for edges in [Edges::Zero, Edges::Scale] {
                 for storage in [Storage::F32, Storage::U32] {
                     // The second n needs products of 64 bits.
                     for (min_photons, limited_mask) in [(25, true), (25, false), (u32::MAX, false)] {
                         let search = Search { order, ..search(min_photons, 32, edges) };
-                        let base = Settings { search, method, storage, limited_mask, ..Settings::default() };
+                        let sat_build = SatBuild::Doubling;
+                        let base = Settings {
+                            search,
+                            method,
+                            storage,
+                            limited_mask,
+                            sat_build,
+                            ..Settings::default()
+                        };
                         all.push(base);
+                        all.push(Settings { masked: true, ..base });
+                        all.push(Settings { sat_build: SatBuild::Scan, ..base });
                         all.push(Settings { split: Split::Odd, matching: Matching::Modulo, ..base });
                         all.push(Settings { split: Split::Odd, faults: Faults::AS_PRINTED, ..base });
                         all.push(Settings { sat_samples: SatSamples::Sixteen, ..base });
                         for variation in Variation::ALL {
                             let varied = Settings { variation: Some(variation), ..base };
                             let modulo = Settings { split: Split::Odd, matching: Matching::Modulo, ..varied };
-                            all.extend([varied, modulo].into_iter().filter(|s| s.validate().is_ok()));
+                            all.extend([varied, modulo]);
                         }
                     }
                 }
             }
         }
     }
+    all.retain(|settings| settings.validate().is_ok());
     all
 }
 
@@ -64,7 +75,8 @@ fn all_sources() -> Vec<ShaderSource> {
     let mut sources = BTreeMap::from(Unit::ALL.map(|unit| (unit.source().fragment(), unit.source())));
     for settings in all_settings() {
         for format in [TextureFormat::R32Uint, TextureFormat::R32Float] {
-            for source in shader_sources(format, &settings) {
+            let census = AdaptivePipeline::shader_source(format, &Settings::default());
+            for source in shader_sources(format, &settings).into_iter().chain([census]) {
                 sources.insert(source.fragment(), source);
             }
         }
@@ -111,7 +123,7 @@ fn every_method_runs_on_the_commands_of_3_3_core_alone() {
         let map = DensityMap::upload(&gl, &density, CountBounds::of(&density, search(25, 32, Edges::Zero)))
             .unwrap();
         for settings in all_settings() {
-            if settings.search.min_photons == 25 && settings.faults == Faults::NONE {
+            if settings.search.min_photons == 25 && settings.faults == Faults::NONE && !settings.masked {
                 let mut pipeline = RadiusPipeline::new(&gl, map.size(), map.format(), settings).unwrap();
                 let radii = pipeline.render(&map).unwrap().read().unwrap();
                 if settings.method.is_exact() {

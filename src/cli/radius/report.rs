@@ -19,6 +19,9 @@ pub(super) struct Report<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) limited_mask: Option<&'a Path>,
     pub(super) settings: Settings,
+    /// Why the planner chose these settings, if it did.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) planned: Option<&'a str>,
     pub(super) device: &'a DeviceInfo,
     pub(super) plan: Plan,
     pub(super) radius: RadiusSummary,

@@ -1,0 +1,115 @@
+//! A pipeline that plans each frame by the photons of the frames before: [`planner`](crate::planner) for running hosts.
+
+use glam::UVec2;
+
+use crate::error::Result;
+use crate::exactness::CountBounds;
+use crate::frame::Frame;
+use crate::gl::{
+    Gl, Pass, Program, Readback, ShaderSource, StateGuard, Target, Texture, TextureFormat, glsl,
+};
+use crate::maps::RadiusMap;
+use crate::pipeline::RadiusPipeline;
+use crate::planner::{self, CENSUS_SIDE, Census, Choice};
+use crate::settings::Settings;
+use crate::structure;
+
+const CENSUS: &str = "census";
+
+/// A [`RadiusPipeline`] whose search is chosen anew as the photons change.
+///
+/// After a frame, the photons of each 64 x 64 pixels are counted in its table (4 fetches a tile) and fetched when the GPU
+/// is done with them: no frame waits, so that the first is planned without a census, and each later one by that of a
+/// frame or a few before it.
+#[derive(Debug)]
+pub struct AdaptivePipeline {
+    gl: Gl,
+    pipeline: RadiusPipeline,
+    map_size: UVec2,
+    choice: Choice,
+    program: Program,
+    counts: Target,
+    census: Option<Census>,
+    readback: Readback,
+}
+
+impl AdaptivePipeline {
+    /// Allocates and compiles for maps of `size` in `density_format`; of `settings`, the question and all that does not
+    /// decide speed are kept, method and build are the planner's.
+    ///
+    /// # Errors
+    /// Those of [`RadiusPipeline::new`].
+    pub fn new(gl: &Gl, size: UVec2, density_format: TextureFormat, settings: Settings) -> Result<Self> {
+        let choice = planner::choose(&settings, size, None, CountBounds::total_at_most(0));
+        let pipeline = RadiusPipeline::new(gl, size, density_format, choice.settings)?;
+        let _state = StateGuard::new(gl);
+        let texture = Texture::new(gl, TextureFormat::R32Uint, planner::tiles(size), 1)?;
+        let adaptive = Self {
+            gl: gl.clone(),
+            pipeline,
+            map_size: size,
+            program: Program::new(gl, &census_source(density_format, &choice.settings))?,
+            counts: Target::single(gl, texture)?,
+            census: None,
+            readback: Readback::new(gl)?,
+            choice,
+        };
+        gl.check("setting up an adaptive pipeline")?;
+        Ok(adaptive)
+    }
+
+    /// Builds and searches what differs from the frame before; see [`RadiusPipeline::update`].
+    ///
+    /// # Errors
+    /// Those of [`RadiusPipeline::update`].
+    pub fn update(&mut self, frame: &Frame<'_>) -> Result<&RadiusMap> {
+        self.plan(frame)?;
+        self.pipeline.update(frame)?;
+        self.count(frame)?;
+        Ok(self.pipeline.radii())
+    }
+
+    /// What the last frame was planned to do, and why.
+    #[must_use]
+    pub fn choice(&self) -> &Choice {
+        &self.choice
+    }
+
+    /// The shader that a pipeline of these settings compiles in addition to those of
+    /// [`shader_sources`](crate::pipeline::shader_sources).
+    #[must_use]
+    pub fn shader_source(density_format: TextureFormat, settings: &Settings) -> ShaderSource {
+        census_source(density_format, settings)
+    }
+
+    /// Takes in the census of an earlier frame, if it has come, and plans this one.
+    fn plan(&mut self, frame: &Frame<'_>) -> Result<()> {
+        if self.readback.is_pending() {
+            let _state = StateGuard::new(&self.gl);
+            if let Some(photons) = self.readback.poll() {
+                self.census = Some(Census::counted(self.map_size, photons));
+            }
+        }
+        let (settings, bounds) = (self.pipeline.settings(), frame.density.bounds());
+        self.choice = planner::choose(settings, self.map_size, self.census.as_ref(), bounds);
+        self.pipeline.set_order(self.choice.settings.search.order)
+    }
+
+    /// Counts the photons of this frame's tiles and asks for them.
+    fn count(&mut self, frame: &Frame<'_>) -> Result<()> {
+        // Of a map without photons nothing is built that could be counted.
+        if self.readback.is_pending() || frame.density.bounds().total == 0 {
+            return Ok(());
+        }
+        let _state = StateGuard::new(&self.gl);
+        let pass = Pass::new(CENSUS, &self.program).set("map_size", self.map_size.as_ivec2());
+        self.pipeline.structure().read_by(pass, frame.density).fill(&mut self.counts)?;
+        self.readback.begin(&self.counts)?;
+        self.gl.check("taking a census")
+    }
+}
+
+fn census_source(density: TextureFormat, settings: &Settings) -> ShaderSource {
+    let source = ShaderSource::new(CENSUS).define("CENSUS_SIDE", CENSUS_SIDE);
+    structure::counter(source, density, settings).file(glsl!("census.frag"))
+}
