@@ -2,11 +2,12 @@
 
 use glam::UVec2;
 
+use crate::certificate::{self, Certificate, Certifier};
 use crate::driver_limits;
 use crate::error::{Error, Result};
 use crate::exactness::{self, Plan};
 use crate::gl::{Gl, ShaderSource, StateGuard, TextureFormat};
-use crate::maps::{DensityMap, RadiusMap};
+use crate::maps::{DensityMap, RadiusMap, describe};
 use crate::radius::{self, RadiusSearch};
 use crate::settings::Settings;
 use crate::structure::{self, Structure};
@@ -24,6 +25,7 @@ pub struct RadiusPipeline {
     density_format: TextureFormat,
     structure: Structure,
     search: RadiusSearch,
+    certifier: Certifier,
     /// The map that the structure was built from.
     built: Option<glow::Texture>,
 }
@@ -56,6 +58,7 @@ impl RadiusPipeline {
             density_format,
             structure: Structure::new(gl, size, density_format, &settings)?,
             search: RadiusSearch::new(gl, size, density_format, &settings, passes)?,
+            certifier: Certifier::new(gl, density_format, &settings),
             built: None,
         };
         gl.check("setting up a radius pipeline")?;
@@ -93,14 +96,7 @@ impl RadiusPipeline {
     /// # Errors
     /// As [`render`](Self::render), and [`Error::Mismatch`] if the structure was not built from this map.
     pub fn search(&mut self, density: &DensityMap) -> Result<&RadiusMap> {
-        self.check(density)?;
-        if self.built != Some(density.texture().name()) {
-            return Err(Error::Mismatch {
-                what: "density map of the search",
-                expected: "the one that was built last".to_owned(),
-                got: "another, or none was built".to_owned(),
-            });
-        }
+        self.check_built(density)?;
         let _state = StateGuard::new(&self.gl);
         self.search.estimate(density, &self.structure)?;
         self.gl.check("searching radii")?;
@@ -111,6 +107,37 @@ impl RadiusPipeline {
     #[must_use]
     pub fn radii(&self) -> &RadiusMap {
         self.search.radii()
+    }
+
+    /// Proves what the last [`search`](Self::search) found, from `density` alone: each radius, each limited pixel, and
+    /// each entry of the table. Waits for the GPU; shaders are compiled by the first call. See
+    /// [`certificate`](crate::certificate).
+    ///
+    /// # Errors
+    /// As [`search`](Self::search); [`Error::Setting`] unless the method is the summed-area table; [`Error::Inexact`]
+    /// also where [`Settings::exactness`] waives it; [`Error::Gl`] while a query of the host counts samples.
+    pub fn certify(&mut self, density: &DensityMap) -> Result<Certificate> {
+        let plan = self.check_certifiable(density)?;
+        let _state = StateGuard::new(&self.gl);
+        self.certifier.certify(density, plan, &self.structure, self.search.radii())
+    }
+
+    /// As [`certify`](Self::certify), for radii that the host found by itself: a [`build`](Self::build) is all that has to
+    /// be done before.
+    ///
+    /// # Errors
+    /// As [`certify`](Self::certify), and [`Error::Mismatch`] if the sizes differ.
+    pub fn certify_radii(&mut self, density: &DensityMap, radii: &RadiusMap) -> Result<Certificate> {
+        let plan = self.check_certifiable(density)?;
+        if radii.size() != self.size {
+            return Err(Error::Mismatch {
+                what: "radius map",
+                expected: self.size.to_string(),
+                got: radii.size().to_string(),
+            });
+        }
+        let _state = StateGuard::new(&self.gl);
+        self.certifier.certify(density, plan, &self.structure, radii)
     }
 
     /// How the counts of `density` would be taken in, and whether the result is exact.
@@ -127,9 +154,25 @@ impl RadiusPipeline {
         &self.settings
     }
 
+    fn check_certifiable(&self, density: &DensityMap) -> Result<Plan> {
+        Certificate::check_possible(&self.settings)?;
+        self.check_built(density)?;
+        Certificate::plan(&self.settings, density)
+    }
+
+    fn check_built(&self, density: &DensityMap) -> Result<()> {
+        self.check(density)?;
+        if self.built == Some(density.texture().name()) {
+            return Ok(());
+        }
+        Err(Error::Mismatch {
+            what: "density map of the search",
+            expected: "the one that was built last".to_owned(),
+            got: "another, or none was built".to_owned(),
+        })
+    }
+
     fn check(&self, density: &DensityMap) -> Result<()> {
-        let describe =
-            |size: UVec2, format: TextureFormat| format!("{} x {} {}", size.x, size.y, format.name());
         if density.size() != self.size || density.format() != self.density_format {
             return Err(Error::Mismatch {
                 what: "density map",
@@ -148,10 +191,11 @@ impl RadiusPipeline {
     }
 }
 
-/// The fragment shaders that a pipeline of these settings may compile, in the order of its passes.
+/// The fragment shaders that a pipeline of these settings may compile, in the order of its passes; those of a certificate last.
 #[must_use]
 pub fn shader_sources(density_format: TextureFormat, settings: &Settings) -> Vec<ShaderSource> {
     let mut sources = structure::build_sources(density_format, settings);
     sources.extend(radius::search_sources(density_format, settings));
+    sources.extend(certificate::sources(density_format, settings));
     sources
 }

@@ -8,6 +8,7 @@
 mod device_info;
 mod pass;
 mod program;
+mod query;
 mod source;
 mod state;
 mod texture;
@@ -16,6 +17,7 @@ mod timer;
 pub use device_info::DeviceInfo;
 pub(crate) use pass::{Pass, Target};
 pub(crate) use program::Program;
+pub(crate) use query::Query;
 pub use source::ShaderSource;
 pub(crate) use source::glsl;
 pub(crate) use state::StateGuard;

@@ -30,7 +30,7 @@ use glam::UVec2;
 
 use crate::error::Result;
 use crate::exactness::Plan;
-use crate::gl::{Gl, Pass, ShaderSource, TextureFormat};
+use crate::gl::{Gl, Pass, ShaderSource, Texture, TextureFormat};
 use crate::maps::DensityMap;
 use crate::settings::{Method, Settings, Storage};
 
@@ -70,6 +70,14 @@ impl Structure {
             }
             Self::Mipmap(mipmap) => mipmap.build(density, plan),
             Self::SummedAreaTable(table) => table.build(density, plan),
+        }
+    }
+
+    /// The texture of a summed-area table.
+    pub(crate) fn table(&self) -> Option<&Texture> {
+        match self {
+            Self::BruteForce(_) | Self::Mipmap(_) => None,
+            Self::SummedAreaTable(table) => Some(table.texture()),
         }
     }
 
@@ -127,7 +135,11 @@ fn number(source: ShaderSource, settings: &Settings) -> ShaderSource {
 }
 
 /// Adds access to the density map, in the number type of the sums.
-fn density_access(source: ShaderSource, density: TextureFormat, settings: &Settings) -> ShaderSource {
+pub(crate) fn density_access(
+    source: ShaderSource,
+    density: TextureFormat,
+    settings: &Settings,
+) -> ShaderSource {
     let source = source.define_if(density == TextureFormat::R32Float, "DENSITY_F32");
     number(source, settings).file(crate::gl::glsl!("common/density.glsl"))
 }
