@@ -45,6 +45,7 @@
 //! | `cli`, `main` | the program, built on the public library: one file a verb |
 //! | [`measure`] | how right and how fast a result is: differences, timing runs (`bench`), rivals on the processor (`rivals`), the thesis's tables and claims (`thesis`), both together (`reproduce`), a page of them (`report`) |
 //! | [`pipeline`] | the stages in order; what a host calls |
+//! | [`certificate`] | proof that a radius map is the definition's, without computing that |
 //! | `radius` | density map and structure in, radius map out |
 //! | [`structure`] | brute force, mipmaps, pyramid, summed-area table: a section of the thesis each |
 //! | `driver_limits` | what software renderers would silently get wrong |
@@ -83,6 +84,7 @@
 //! | SAT | summed-area table |
 
 mod adaptive;
+pub mod certificate;
 #[cfg(any(feature = "egl", feature = "osmesa"))]
 pub mod context;
 mod driver_limits;
@@ -105,6 +107,7 @@ pub mod synth;
 pub use {glam, glow};
 
 pub use adaptive::AdaptivePipeline;
+pub use certificate::Certificate;
 pub use error::{Error, Result};
 pub use exactness::CountBounds;
 pub use frame::{Changed, Frame};

@@ -35,8 +35,6 @@ impl DensityMap {
     /// # Errors
     /// [`Error::Mismatch`] if the size or the map's format is another; [`Error::Gl`] if the driver fails.
     pub fn replace(&mut self, counts: &Image<u32>, bounds: CountBounds) -> Result<()> {
-        let describe =
-            |size: UVec2, format: TextureFormat| format!("{} x {} {}", size.x, size.y, format.name());
         if (counts.size(), TextureFormat::R32Uint) != (self.size(), self.format()) {
             return Err(Error::Mismatch {
                 what: "counts",
@@ -157,6 +155,36 @@ impl RadiusMap {
         Ok(Self { target: Target::new(gl, textures)? })
     }
 
+    /// Uses radii that the host found by itself, and the GL_R8UI mask of limited pixels if it has one, to be certified;
+    /// the host keeps both alive as long as this.
+    ///
+    /// # Errors
+    /// [`Error::Mismatch`](crate::Error::Mismatch) unless they are GL_TEXTURE_2D in GL_R32UI and GL_R8UI, of one size, with
+    /// level 0 as their base and red where red belongs; [`Error::Gl`](crate::Error::Gl) if the driver can't draw to them.
+    pub fn borrow(gl: &Gl, radii: glow::Texture, limited: Option<glow::Texture>) -> Result<Self> {
+        let _state = StateGuard::new(gl);
+        let mut textures = vec![Texture::borrow(gl, radii)?];
+        textures.extend(limited.map(|limited| Texture::borrow(gl, limited)).transpose()?);
+        let size = textures[0].size();
+        let formats = [TextureFormat::R32Uint, TextureFormat::R8Uint];
+        for (texture, format) in textures.iter().zip(formats) {
+            if (texture.size(), texture.format()) != (size, format) {
+                return Err(Error::Mismatch {
+                    what: "host's radius map",
+                    expected: describe(size, format),
+                    got: describe(texture.size(), texture.format()),
+                });
+            }
+        }
+        Ok(Self { target: Target::new(gl, textures)? })
+    }
+
+    /// Columns and rows.
+    #[must_use]
+    pub fn size(&self) -> UVec2 {
+        self.target.size()
+    }
+
     /// The texture of radii, to bind in the host's own shaders as a `usampler2D`.
     ///
     /// Ask after each frame: where a search takes several passes, two textures take turns.
@@ -168,7 +196,7 @@ impl RadiusMap {
     /// The GL_R8UI texture that is 1 where MR ended the search with too few photons, if it was asked for.
     #[must_use]
     pub fn limited_texture(&self) -> Option<glow::Texture> {
-        self.target.textures().get(1).map(Texture::name)
+        self.limited().map(Texture::name)
     }
 
     /// Reads the radii back; waits for the GPU.
@@ -188,7 +216,7 @@ impl RadiusMap {
     /// [`Error::Gl`](crate::Error::Gl) if the driver fails, as when the context is lost.
     pub fn read_limited(&self) -> Result<Option<Image<u8>>> {
         let _state = StateGuard::new(self.gl());
-        let mask = self.target.textures().get(1).map(|texture| texture.read(0));
+        let mask = self.limited().map(|texture| texture.read(0));
         self.gl().check("reading a mask back")?;
         Ok(mask)
     }
@@ -205,7 +233,16 @@ impl RadiusMap {
         self.target.texture()
     }
 
+    pub(crate) fn limited(&self) -> Option<&Texture> {
+        self.target.textures().get(1)
+    }
+
     fn gl(&self) -> &Gl {
         self.target.texture().gl()
     }
+}
+
+/// Size and format for a reader.
+pub(crate) fn describe(size: UVec2, format: TextureFormat) -> String {
+    format!("{} x {} {}", size.x, size.y, format.name())
 }

@@ -2,12 +2,13 @@
 
 use glam::UVec2;
 
+use crate::certificate::{self, Certificate, Certifier};
 use crate::driver_limits;
 use crate::error::{Error, Result};
 use crate::exactness::{self, CountBounds, Plan};
 use crate::frame::{Changed, Frame, Rectangle};
 use crate::gl::{Gl, ShaderSource, StateGuard, TextureFormat};
-use crate::maps::{DensityMap, Mask, RadiusMap};
+use crate::maps::{DensityMap, Mask, RadiusMap, describe};
 use crate::radius::{self, RadiusSearch};
 use crate::settings::{Order, Search, Settings};
 use crate::structure::{self, Structure};
@@ -25,6 +26,7 @@ pub struct RadiusPipeline {
     density_format: TextureFormat,
     structure: Structure,
     search: RadiusSearch,
+    certifier: Certifier,
     /// Searches of other orders, which [`set_order`](RadiusPipeline::set_order) left.
     resting: Vec<(Order, RadiusSearch)>,
     /// What the structure holds, and whether the radii are those of it.
@@ -78,6 +80,7 @@ impl RadiusPipeline {
             density_format,
             structure: Structure::new(gl, size, density_format, &settings)?,
             search: RadiusSearch::new(gl, size, density_format, &settings, passes)?,
+            certifier: Certifier::new(gl, density_format, &settings),
             resting: Vec::new(),
             built: None,
             searched: false,
@@ -135,14 +138,7 @@ impl RadiusPipeline {
         if frame.changed == Changed::Nothing && self.searched {
             return Ok(self.search.radii());
         }
-        self.check(frame)?;
-        let Some(built) = self.built.filter(|built| built.map == frame.density.texture().name()) else {
-            return Err(Error::Mismatch {
-                what: "density map of the search",
-                expected: "the one that was built last".to_owned(),
-                got: "another, or none was built".to_owned(),
-            });
-        };
+        let built = self.check_built(frame)?;
         let _state = StateGuard::new(&self.gl);
         self.searched = false;
         if built.is_empty() {
@@ -252,6 +248,37 @@ impl RadiusPipeline {
         self.search.radii()
     }
 
+    /// Proves what the last [`search`](Self::search) found, from `density` alone: each radius, each limited pixel, and
+    /// each entry of the table. Waits for the GPU; shaders are compiled by the first call. See
+    /// [`certificate`](crate::certificate).
+    ///
+    /// # Errors
+    /// As [`search`](Self::search), also for a pipeline with masks; [`Error::Setting`] unless the method is the summed-area table; [`Error::Inexact`]
+    /// also where [`Settings::exactness`] waives it; [`Error::Gl`] while a query of the host counts samples.
+    pub fn certify(&mut self, density: &DensityMap) -> Result<Certificate> {
+        let plan = self.prepare_certificate(density)?;
+        let _state = StateGuard::new(&self.gl);
+        self.certifier.certify(density, plan, &self.structure, self.search.radii())
+    }
+
+    /// As [`certify`](Self::certify), for radii that the host found by itself: a [`build`](Self::build) is all that has to
+    /// be done before.
+    ///
+    /// # Errors
+    /// As [`certify`](Self::certify), and [`Error::Mismatch`] if the sizes differ.
+    pub fn certify_radii(&mut self, density: &DensityMap, radii: &RadiusMap) -> Result<Certificate> {
+        let plan = self.prepare_certificate(density)?;
+        if radii.size() != self.size {
+            return Err(Error::Mismatch {
+                what: "radius map",
+                expected: self.size.to_string(),
+                got: radii.size().to_string(),
+            });
+        }
+        let _state = StateGuard::new(&self.gl);
+        self.certifier.certify(density, plan, &self.structure, radii)
+    }
+
     /// How the counts of `density` would be taken in, and whether the result is exact.
     ///
     /// # Errors
@@ -266,10 +293,38 @@ impl RadiusPipeline {
         &self.settings
     }
 
+    /// Prepares a certificate: checks that it is possible, and builds a table that was left out for lack of photons.
+    fn prepare_certificate(&mut self, density: &DensityMap) -> Result<Plan> {
+        Certificate::check_possible(&self.settings)?;
+        let built = self.check_built(&Frame::new(density))?;
+        if built.grown {
+            return Err(Error::Mismatch {
+                what: "density map of a certificate",
+                expected: "that of all photons".to_owned(),
+                got: "that of photons that were added".to_owned(),
+            });
+        }
+        let plan = Certificate::plan(&self.settings, density)?;
+        if built.is_empty() {
+            let _state = StateGuard::new(&self.gl);
+            self.structure.build(density, plan, Rectangle::whole(self.size))?;
+        }
+        Ok(plan)
+    }
+
+    fn check_built(&self, frame: &Frame<'_>) -> Result<Built> {
+        self.check(frame)?;
+        self.built.filter(|built| built.map == frame.density.texture().name()).ok_or_else(|| {
+            Error::Mismatch {
+                what: "density map of the search",
+                expected: "the one that was built last".to_owned(),
+                got: "another, or none was built".to_owned(),
+            }
+        })
+    }
+
     fn check(&self, frame: &Frame<'_>) -> Result<()> {
         let mismatch = |what, expected: String, got: String| Err(Error::Mismatch { what, expected, got });
-        let describe =
-            |size: UVec2, format: TextureFormat| format!("{} x {} {}", size.x, size.y, format.name());
         let density = frame.density;
         if density.size() != self.size || density.format() != self.density_format {
             return mismatch(
@@ -298,10 +353,11 @@ impl RadiusPipeline {
     }
 }
 
-/// The fragment shaders that a pipeline of these settings may compile, in the order of its passes.
+/// The fragment shaders that a pipeline of these settings may compile, in the order of its passes; those of a certificate last.
 #[must_use]
 pub fn shader_sources(density_format: TextureFormat, settings: &Settings) -> Vec<ShaderSource> {
     let mut sources = structure::build_sources(density_format, settings);
     sources.extend(radius::search_sources(density_format, settings));
+    sources.extend(certificate::sources(density_format, settings));
     sources
 }

@@ -24,7 +24,8 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("structure", &["exactness", "gl", "maps"]),
     ("driver_limits", &["gl", "structure"]),
     ("radius", &["exactness", "gl", "maps", "structure"]),
-    ("pipeline", &["exactness", "gl", "driver_limits", "maps", "radius", "structure"]),
+    ("certificate", &["exactness", "gl", "maps", "structure"]),
+    ("pipeline", &["certificate", "exactness", "gl", "driver_limits", "maps", "radius", "structure"]),
     ("measure", &["exactness", "gl", "maps", "pipeline", "reference", "synth"]),
 ];
 const OPEN_TO_ALL: [&str; 3] = ["error", "image", "settings"];

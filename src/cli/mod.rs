@@ -19,6 +19,7 @@ Examples:
   varikernel synth caustic -o map.exr          make a map to try things on
   varikernel radius map.exr -o radius.png      a picture of its radius map
   varikernel radius map.exr -o radius.exr --verify --method pyramid
+  varikernel radius map.exr -o radius.exr --certify
   varikernel compare radius.exr other.npy      how two maps differ
   varikernel reproduce                         the thesis's numbers from this machine
   varikernel devices                           the OpenGL devices found here";
@@ -26,7 +27,8 @@ Examples:
 /// Variable-kernel radius maps from photon density maps, exact, in OpenGL 3.3 core.
 ///
 /// For each pixel of a map of photon counts: the radius of the smallest box that holds at least n photons
-/// (E. W. Bjønnes, Oslo 2010). Exit codes: 0 done, 1 the maps differ, 2 it could not be done.
+/// (E. W. Bjønnes, Oslo 2010). Exit codes: 0 done, 1 the maps differ or are not
+/// proved, 2 it could not be done.
 #[derive(Debug, Parser)]
 #[command(version, max_term_width = 100, arg_required_else_help = true, after_help = EXAMPLES)]
 pub(crate) struct Cli {
@@ -51,7 +53,7 @@ enum Verb {
 /// What a verb that did its job found.
 pub(crate) enum Outcome {
     Done,
-    /// The answer to "are they equal?" is no.
+    /// The answer to "are they equal?", or to "is it proved?", is no.
     Differs,
 }
 

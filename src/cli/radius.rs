@@ -17,7 +17,9 @@ use varikernel::settings::{
     Edges, Exactness, Faults, Matching, Method, Order, SatBuild, SatSamples, Search, Settings, Split,
     Storage, Variation,
 };
-use varikernel::{CountBounds, DensityMap, Error, Frame, Image, Mask, RadiusPipeline, reference};
+use varikernel::{
+    Certificate, CountBounds, DensityMap, Error, Frame, Image, Mask, RadiusPipeline, reference,
+};
 
 use super::{Outcome, output};
 use report::{MapReport, Report, Timing};
@@ -97,6 +99,11 @@ pub(crate) struct Args {
     #[arg(long)]
     verify: bool,
 
+    /// Prove the result on the GPU: each radius by two boxes, each table entry by the counts; exit 1 if something is not
+    /// proved. For the summed-area table.
+    #[arg(long, conflicts_with_all = ["allow_inexact", "mask"])]
+    certify: bool,
+
     /// Also write a map that is 1 where MR ended the search with too few photons, else 0.
     #[arg(long, value_name = "FILE")]
     limited_mask: Option<PathBuf>,
@@ -151,6 +158,9 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     let settings = settings(args);
     let explain = |error| in_words_of_options(error, &args.map);
     settings.validate().map_err(explain)?;
+    if args.certify {
+        Certificate::check_possible(&settings).map_err(explain)?;
+    }
     check_files(args)?;
     let options = ReadOptions { channel: args.channel.as_deref(), ..ReadOptions::default() };
     let counts = read_counts(&args.map, &options)?;
@@ -174,6 +184,7 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
         radius: radii.read()?,
         limited: radii.read_limited()?.unwrap_or_else(|| unreachable!("the settings ask for the mask")),
     };
+    let certificate = args.certify.then(|| pipeline.certify(&density)).transpose().map_err(explain)?;
 
     let verify = if args.verify {
         let definition = reference::radius_by_table(&counts, settings.search);
@@ -213,6 +224,7 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
         plan,
         radius: RadiusSummary::of(&radii),
         stages: vec![Timing::new("build", build), Timing::new("search", search)],
+        certificate,
         verify,
         verify_limited,
     };
@@ -223,7 +235,8 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     }
     let mut differences = [&report.verify, &report.verify_limited].into_iter().flatten();
     let differs = differences.any(|difference| !difference.is_none());
-    Ok(if differs { Outcome::Differs } else { Outcome::Done })
+    let is_unproved = certificate.is_some_and(|certificate| !certificate.is_proved());
+    Ok(if differs || is_unproved { Outcome::Differs } else { Outcome::Done })
 }
 
 /// The planner's choice, where nothing else is asked for.

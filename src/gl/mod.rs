@@ -8,6 +8,7 @@
 mod device_info;
 mod pass;
 mod program;
+mod query;
 mod readback;
 mod source;
 mod state;
@@ -17,6 +18,7 @@ mod timer;
 pub use device_info::DeviceInfo;
 pub(crate) use pass::{Pass, Target};
 pub(crate) use program::Program;
+pub(crate) use query::Query;
 pub(crate) use readback::Readback;
 pub use source::ShaderSource;
 pub(crate) use source::glsl;

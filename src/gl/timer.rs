@@ -5,7 +5,8 @@ use std::time::{Duration, Instant};
 use glam::UVec2;
 use glow::HasContext as _;
 
-use super::{Gl, StateGuard, Target, Texture, TextureFormat, gl_error};
+use super::query::Query;
+use super::{Gl, StateGuard, Target, Texture, TextureFormat};
 use crate::error::Result;
 
 /// Query and clock may differ by this share of the clock's time...
@@ -45,7 +46,7 @@ impl Sample {
 #[derive(Debug)]
 pub struct Timer {
     gl: Gl,
-    query: glow::Query,
+    query: Query,
     /// llvmpipe stamps the begin of a query while it rasterises the frame in hand: too late if that frame is the
     /// timed work, and never if there is none. There, a frame of one pixel is put before the begin and
     /// another finished right after it.
@@ -64,9 +65,7 @@ impl Timer {
         } else {
             None
         };
-        // SAFETY: the context is current while the handle lives.
-        let query = unsafe { gl.glow().create_query() }.map_err(|what| gl_error(gl.glow(), &what))?;
-        Ok(Self { gl: gl.clone(), query, llvmpipe_frame })
+        Ok(Self { gl: gl.clone(), query: Query::of_time(gl)?, llvmpipe_frame })
     }
 
     /// Runs `work`, waits for it, and says how long it took on the GPU and by the clock.
@@ -76,52 +75,28 @@ impl Timer {
     pub fn time<T>(&mut self, work: impl FnOnce() -> Result<T>) -> Result<(T, Sample)> {
         let glow = self.gl.glow();
         let _state = StateGuard::new(&self.gl);
-        // SAFETY: the context is current while the handle lives; the query is ended below on every way out.
-        unsafe {
-            if let Some(frame) = &mut self.llvmpipe_frame {
-                frame.clear(&[0]);
-            }
-            glow.finish();
-            self.gl.check("preparing a time query")?;
-            glow.begin_query(glow::TIME_ELAPSED, self.query);
-            self.gl.check("beginning a time query; one of the host's may be running")?;
-            if let Some(frame) = &mut self.llvmpipe_frame {
-                frame.clear(&[0]);
-                glow.finish();
-            }
+        if let Some(frame) = &mut self.llvmpipe_frame {
+            frame.clear(&[0]);
+        }
+        // SAFETY: the context is current while the handle lives.
+        unsafe { glow.finish() };
+        self.gl.check("preparing a time query")?;
+        self.query.begin()?;
+        if let Some(frame) = &mut self.llvmpipe_frame {
+            frame.clear(&[0]);
+            // SAFETY: as above.
+            unsafe { glow.finish() };
         }
         let start = Instant::now();
         let result = work();
-        let mut nanoseconds = 0_u64;
-        // SAFETY: no query buffer is bound, so the "offset" is the address of the result. (glow's plain reader of u64
-        // wants a 4.5 command.)
-        let wall = unsafe {
-            glow.end_query(glow::TIME_ELAPSED);
-            glow.finish();
-            let wall = start.elapsed();
-            let address = (&raw mut nanoseconds).expose_provenance();
-            // A host's context may be newer than 3.3 and hold one.
-            let query_buffer = self.gl.has_query_buffers().then(|| {
-                let bound = glow.get_parameter_buffer(glow::QUERY_BUFFER_BINDING);
-                glow.bind_buffer(glow::QUERY_BUFFER, None);
-                bound
-            });
-            glow.get_query_parameter_u64_with_offset(self.query, glow::QUERY_RESULT, address);
-            if let Some(bound) = query_buffer {
-                glow.bind_buffer(glow::QUERY_BUFFER, bound);
-            }
-            wall
-        };
+        self.query.end();
+        // SAFETY: as above.
+        unsafe { glow.finish() };
+        let wall = start.elapsed();
+        let nanoseconds = self.query.result();
         let result = result?;
         self.gl.check("timing")?;
         Ok((result, Sample { query: Duration::from_nanos(nanoseconds), wall }))
-    }
-}
-
-impl Drop for Timer {
-    fn drop(&mut self) {
-        // SAFETY: the context is current while the handle lives, and the name is ours.
-        unsafe { self.gl.glow().delete_query(self.query) };
     }
 }
 

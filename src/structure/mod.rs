@@ -31,7 +31,7 @@ use glam::UVec2;
 use crate::error::{Error, Result};
 use crate::exactness::Plan;
 use crate::frame::Rectangle;
-use crate::gl::{Gl, Pass, ShaderSource, TextureFormat};
+use crate::gl::{Gl, Pass, ShaderSource, Texture, TextureFormat};
 use crate::maps::DensityMap;
 use crate::settings::{Method, Settings, Storage};
 
@@ -89,6 +89,14 @@ impl Structure {
         }
     }
 
+    /// The texture of a summed-area table.
+    pub(crate) fn table(&self) -> Option<&Texture> {
+        match self {
+            Self::BruteForce(_) | Self::Mipmap(_) => None,
+            Self::SummedAreaTable(table) => Some(table.texture()),
+        }
+    }
+
     /// Gives the search pass what the method's counter reads.
     pub(crate) fn read_by<'a>(&'a self, pass: Pass<'a>, density: &'a DensityMap) -> Pass<'a> {
         match self {
@@ -143,7 +151,11 @@ fn number(source: ShaderSource, settings: &Settings) -> ShaderSource {
 }
 
 /// Adds access to the density map, in the number type of the sums.
-fn density_access(source: ShaderSource, density: TextureFormat, settings: &Settings) -> ShaderSource {
+pub(crate) fn density_access(
+    source: ShaderSource,
+    density: TextureFormat,
+    settings: &Settings,
+) -> ShaderSource {
     let source = source.define_if(density == TextureFormat::R32Float, "DENSITY_F32");
     number(source, settings).file(crate::gl::glsl!("common/density.glsl"))
 }

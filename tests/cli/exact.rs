@@ -156,3 +156,31 @@ fn every_side_ratio_and_the_largest_radius_are_exact() {
         }
     }
 }
+
+#[test]
+fn tables_certify_themselves() {
+    let place = Workplace::with_cornell();
+    for options in
+        ["", "--edges zero --search forward", "--storage f32", "--sat-build doubling --sat-samples 2"]
+    {
+        let report =
+            place.json(&format!("radius cornell.exr -o radius.npy --certify --verify --json {options}"));
+        assert_eq!(report["certificate"]["unproved_radii"], 0, "{options}");
+        assert_eq!(report["certificate"]["wrong_entries"], 0, "{options}");
+    }
+    let answer = place.answer("radius cornell.exr -o radius.npy --certify");
+    assert!(answer.contains("certified  yes, every radius"), "{answer}");
+}
+
+#[test]
+fn the_printed_faults_are_not_certified() {
+    let place = Workplace::new();
+    place.answer("synth sparse -o map.npy --size 70x66");
+    let run = place.run("radius map.npy -o radius.npy --fault border-test --certify").code(1);
+    let answer = String::from_utf8_lossy(&run.get_output().stdout).into_owned();
+    assert!(answer.contains("radii not proved, 0 pixels at odds with the table"), "{answer}");
+
+    let refused = place.run("radius map.npy -o radius.npy --method pyramid --certify").code(2);
+    let words = String::from_utf8_lossy(&refused.get_output().stderr).into_owned();
+    assert!(words.contains("--method Pyramid is not possible"), "{words}");
+}

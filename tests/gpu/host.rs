@@ -192,6 +192,10 @@ fn errors_that_the_host_left_behind_are_not_blamed_on_us() {
     leave_error();
     DensityMap::borrow(&gl, radii.texture(), CountBounds::UNKNOWN).unwrap();
     leave_error();
+    varikernel::RadiusMap::borrow(&gl, radii.texture(), radii.limited_texture()).unwrap();
+    leave_error();
+    pipeline.certify(&map).unwrap();
+    leave_error();
     varikernel::gl::time(&gl, || Ok(())).unwrap();
 }
 

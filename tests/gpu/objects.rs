@@ -19,6 +19,7 @@ static PROGRAMS: AtomicI64 = AtomicI64::new(0);
 static SHADERS: AtomicI64 = AtomicI64::new(0);
 static SAMPLERS: AtomicI64 = AtomicI64::new(0);
 static VERTEX_ARRAYS: AtomicI64 = AtomicI64::new(0);
+static QUERIES: AtomicI64 = AtomicI64::new(0);
 
 /// Wraps a `glGen*`/`glDelete*` pair so that the live names are counted.
 macro_rules! counted {
@@ -50,6 +51,7 @@ mod wrappers {
     counted!(glGenFramebuffers, glDeleteFramebuffers, FRAMEBUFFERS);
     counted!(glGenSamplers, glDeleteSamplers, SAMPLERS);
     counted!(glGenVertexArrays, glDeleteVertexArrays, VERTEX_ARRAYS);
+    counted!(glGenQueries, glDeleteQueries, QUERIES);
 
     pub(super) extern "system" fn glCreateProgram() -> u32 {
         PROGRAMS.fetch_add(1, Ordering::SeqCst);
@@ -115,6 +117,8 @@ mod wrappers {
             "glDeleteSamplers" => glDeleteSamplers as *const c_void,
             "glGenVertexArrays" => glGenVertexArrays as *const c_void,
             "glDeleteVertexArrays" => glDeleteVertexArrays as *const c_void,
+            "glGenQueries" => glGenQueries as *const c_void,
+            "glDeleteQueries" => glDeleteQueries as *const c_void,
             "glCreateProgram" => glCreateProgram as *const c_void,
             "glDeleteProgram" => glDeleteProgram as *const c_void,
             "glCreateShader" => glCreateShader as *const c_void,
@@ -158,7 +162,7 @@ fn forward<T>(name: &str, call: impl FnOnce(*const c_void) -> T) -> T {
 #[test]
 fn every_object_is_freed_and_the_state_put_back_also_after_an_error() {
     let live = || {
-        [&TEXTURES, &FRAMEBUFFERS, &PROGRAMS, &SHADERS, &SAMPLERS, &VERTEX_ARRAYS]
+        [&TEXTURES, &FRAMEBUFFERS, &PROGRAMS, &SHADERS, &SAMPLERS, &VERTEX_ARRAYS, &QUERIES]
             .map(|counter| counter.load(Ordering::SeqCst))
     };
     // SAFETY: each wrapper calls the command that it stands for.
@@ -183,6 +187,9 @@ fn every_object_is_freed_and_the_state_put_back_also_after_an_error() {
             let settings = Settings { limited_mask: true, ..Settings::of(method) };
             let mut pipeline = RadiusPipeline::new(&gl, map.size(), map.format(), settings).unwrap();
             pipeline.render(&map).unwrap().read().unwrap();
+            let is_table = method == Method::SummedAreaTable;
+            assert_eq!(pipeline.certify(&map).is_ok(), is_table);
+            assert_eq!(live()[6] - before[6], i64::from(is_table), "queries");
             let mut other = RadiusPipeline::new(&gl, UVec2::ONE, map.format(), settings).unwrap();
             assert!(other.render(&map).is_err());
         }
@@ -224,5 +231,5 @@ fn every_object_is_freed_and_the_state_put_back_also_after_an_error() {
     }
     assert_eq!(live(), before);
     drop(gl);
-    assert_eq!(live(), [0; 6]);
+    assert_eq!(live(), [0; 7]);
 }

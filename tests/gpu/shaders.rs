@@ -126,6 +126,9 @@ fn every_method_runs_on_the_commands_of_3_3_core_alone() {
             if settings.search.min_photons == 25 && settings.faults == Faults::NONE && !settings.masked {
                 let mut pipeline = RadiusPipeline::new(&gl, map.size(), map.format(), settings).unwrap();
                 let radii = pipeline.render(&map).unwrap().read().unwrap();
+                if settings.method == Method::SummedAreaTable {
+                    assert!(pipeline.certify(&map).unwrap().is_proved(), "{settings:?}");
+                }
                 if settings.method.is_exact() {
                     assert_eq!(
                         radii,

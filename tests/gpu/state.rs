@@ -8,7 +8,7 @@ use std::ffi::c_void;
 use glam::UVec2;
 use glow::HasContext as _;
 use varikernel::settings::{Edges, Method, Settings};
-use varikernel::{CountBounds, DensityMap, Gl, RadiusPipeline, context};
+use varikernel::{CountBounds, DensityMap, Gl, RadiusMap, RadiusPipeline, context};
 
 use crate::support::{random_map, search, working_candidates};
 
@@ -263,6 +263,11 @@ fn check(choice: &context::DeviceChoice) {
             assert_eq!(limited, expected.limited, "{method:?} under the host's state");
         }
         let texture = radii.texture();
+        let (certificate, fits) = (pipeline.certify(&map), method == Method::SummedAreaTable);
+        assert_unchanged(&host, &before, "RadiusPipeline::certify");
+        assert_eq!(certificate.is_ok_and(varikernel::Certificate::is_proved), fits, "{method:?}");
+        RadiusMap::borrow(gl, texture, None).unwrap();
+        assert_unchanged(&host, &before, "RadiusMap::borrow");
         DensityMap::borrow(gl, texture, CountBounds::UNKNOWN).unwrap();
         assert_unchanged(&host, &before, "DensityMap::borrow");
     }

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use anyhow::Result;
 use serde::Serialize;
+use varikernel::Certificate;
 use varikernel::exactness::Plan;
 use varikernel::gl::{DeviceInfo, Sample};
 use varikernel::measure::{Difference, RadiusSummary};
@@ -26,6 +27,8 @@ pub(super) struct Report<'a> {
     pub(super) plan: Plan,
     pub(super) radius: RadiusSummary,
     pub(super) stages: Vec<Timing>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) certificate: Option<Certificate>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) verify: Option<Difference>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -69,6 +72,9 @@ pub(super) fn print(report: &Report<'_>) -> Result<()> {
         facts
             .push((stage, format!("{query_ms:.3} ms by GPU query, {wall_ms:.3} ms by the clock, first run")));
     }
+    if let Some(certificate) = report.certificate {
+        facts.push(("certified", in_words(certificate)));
+    }
     if let Some(difference) = &report.verify {
         facts.push(("verify", format!("against the definition: {difference}")));
     }
@@ -80,6 +86,15 @@ pub(super) fn print(report: &Report<'_>) -> Result<()> {
         facts.push(("", mask.display().to_string()));
     }
     output::print_facts(&facts)
+}
+
+fn in_words(certificate: Certificate) -> String {
+    let Certificate { unproved_radii, wrong_entries } = certificate;
+    if certificate.is_proved() {
+        "yes, every radius by two boxes, every entry of the table by the counts".to_owned()
+    } else {
+        format!("no: {unproved_radii} radii not proved, {wrong_entries} pixels at odds with the table")
+    }
 }
 
 fn exactness(report: &Report<'_>) -> &'static str {

@@ -94,6 +94,10 @@ impl SummedAreaTable {
         Ok(())
     }
 
+    pub(super) fn texture(&self) -> &Texture {
+        self.table.texture()
+    }
+
     pub(super) fn read_by<'a>(&'a self, pass: Pass<'a>) -> Pass<'a> {
         let pass = pass.read("table", self.table.texture());
         if self.settings.faults.in_table_sampling() {

@@ -1,0 +1,35 @@
+// Draws the pixels whose radius two boxes do not prove: one that holds enough, and a smaller one that does not.
+// Follows a counter that defines: uint count_in_box(ivec2 lo, ivec2 hi), both corners included and inside the map.
+uniform ivec2 map_size;
+uniform uint max_radius;
+uniform usampler2D radii;
+#ifdef LIMITED_MASK
+uniform usampler2D limited;
+#endif
+
+bool enough_within(ivec2 center, int r)
+{
+    ivec2 lo = max(center - r, ivec2(0));
+    ivec2 hi = min(center + r, map_size - 1);
+    uint side = uint(2 * r + 1);
+    uvec2 inside = uvec2(hi - lo + 1);
+    return enough(count_in_box(lo, hi), side * side, inside.x * inside.y);
+}
+
+void main()
+{
+    ivec2 center = min(ivec2(gl_FragCoord.xy), map_size - 1);
+    uint radius = texelFetch(radii, center, 0).r;
+    // What is not a radius at all is counted as one that is.
+    uint r = clamp(radius, 1u, max_radius);
+    bool holds = enough_within(center, int(r));
+    // A search starts at 1: below there is nothing to prove.
+    bool smaller_holds = enough_within(center, int(r) - 1) && r > 1u;
+    bool proved = r == radius && !smaller_holds && (holds || r == max_radius);
+#ifdef LIMITED_MASK
+    proved = proved && texelFetch(limited, center, 0).r == (holds ? 0u : 1u);
+#endif
+    if (proved) {
+        discard;
+    }
+}
