@@ -2,7 +2,8 @@
 
 use glam::UVec2;
 
-use crate::maps::{DensityMap, Mask};
+use crate::maps::DensityMap;
+use crate::mask::Mask;
 
 /// One frame of a [`RadiusPipeline`](crate::RadiusPipeline).
 #[derive(Clone, Copy, Debug)]

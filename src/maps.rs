@@ -87,57 +87,6 @@ impl DensityMap {
     }
 }
 
-/// Which pixels need a radius: a GL_R8UI, GL_R16UI or GL_R32UI texture, 0 where none is needed (background, no receiver,
-/// a radius that is still valid elsewhere).
-///
-/// Their radius is 0, which no other pixel has, and they are not limited.
-#[derive(Debug)]
-pub struct Mask {
-    texture: Texture,
-}
-
-impl Mask {
-    /// Makes a texture of `mask`.
-    ///
-    /// # Errors
-    /// [`Error::TooLarge`](crate::Error::TooLarge); [`Error::Gl`](crate::Error::Gl) when memory runs out.
-    pub fn upload(gl: &Gl, mask: &Image<u8>) -> Result<Self> {
-        let _state = StateGuard::new(gl);
-        let texture = Texture::new(gl, TextureFormat::R8Uint, mask.size(), 1)?;
-        texture.upload(mask);
-        gl.check("uploading a mask")?;
-        Ok(Self { texture })
-    }
-
-    /// Uses a texture that the host owns and keeps alive as long as this; its contents may change between frames.
-    ///
-    /// # Errors
-    /// [`Error::Mismatch`](crate::Error::Mismatch) unless it is a GL_TEXTURE_2D of one of the formats above, with level 0
-    /// as its base and red where red belongs.
-    pub fn borrow(gl: &Gl, texture: glow::Texture) -> Result<Self> {
-        let _state = StateGuard::new(gl);
-        let texture = Texture::borrow(gl, texture)?;
-        if texture.format().is_float() {
-            return Err(Error::Mismatch {
-                what: "mask",
-                expected: "GL_R8UI, GL_R16UI or GL_R32UI".to_owned(),
-                got: texture.format().name().to_owned(),
-            });
-        }
-        Ok(Self { texture })
-    }
-
-    /// Columns and rows.
-    #[must_use]
-    pub fn size(&self) -> UVec2 {
-        self.texture.size()
-    }
-
-    pub(crate) fn texture(&self) -> &Texture {
-        &self.texture
-    }
-}
-
 /// The radius of each pixel's box, in pixels: a GL_R32UI texture, from 1 to MR, or 0 where a
 /// [`Mask`] says that none is needed.
 #[derive(Debug)]

@@ -21,11 +21,18 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("synth", &[]),
     ("exactness", &["reference"]),
     ("maps", &["exactness", "gl"]),
-    ("structure", &["exactness", "gl", "maps"]),
+    ("mask", &["gl"]),
+    ("frame", &["maps", "mask"]),
+    ("structure", &["exactness", "frame", "gl", "maps"]),
     ("driver_limits", &["gl", "structure"]),
-    ("radius", &["exactness", "gl", "maps", "structure"]),
+    ("radius", &["exactness", "frame", "gl", "maps", "mask", "structure"]),
     ("certificate", &["exactness", "gl", "maps", "structure"]),
-    ("pipeline", &["certificate", "exactness", "gl", "driver_limits", "maps", "radius", "structure"]),
+    (
+        "pipeline",
+        &["certificate", "exactness", "gl", "driver_limits", "frame", "maps", "radius", "structure"],
+    ),
+    ("planner", &["exactness"]),
+    ("adaptive", &["exactness", "frame", "gl", "maps", "pipeline", "planner", "structure"]),
     ("measure", &["exactness", "gl", "maps", "pipeline", "reference", "synth"]),
 ];
 const OPEN_TO_ALL: [&str; 3] = ["error", "image", "settings"];

@@ -6,6 +6,7 @@
 #![expect(unsafe_code, reason = "OpenGL is a C interface; design rule 8 confines it to this module")]
 
 mod device_info;
+mod fragment_test;
 mod pass;
 mod program;
 mod query;
@@ -16,6 +17,7 @@ mod texture;
 mod timer;
 
 pub use device_info::DeviceInfo;
+pub(crate) use fragment_test::{FragmentTest, fill_where};
 pub(crate) use pass::{Pass, Target};
 pub(crate) use program::Program;
 pub(crate) use query::Query;

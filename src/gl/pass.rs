@@ -93,6 +93,27 @@ impl Target {
         }
     }
 
+    /// Binds level 0 as what draws write to.
+    pub(super) fn bind_for_drawing(&self) {
+        // SAFETY: the context is current while the handle lives, and the framebuffer is complete.
+        unsafe {
+            self.gl.glow().bind_framebuffer(glow::DRAW_FRAMEBUFFER, Some(self.framebuffers[0]));
+        }
+    }
+
+    /// Whether level 0 of a GL_TEXTURE_2D of the host has the size of level 0.
+    pub(super) fn has_size_of(&self, texture: glow::Texture) -> bool {
+        let glow = self.gl.glow();
+        // SAFETY: the context is current while the handle lives; StateGuard puts the binding back.
+        let size = unsafe {
+            glow.active_texture(glow::TEXTURE0);
+            glow.bind_texture(glow::TEXTURE_2D, Some(texture));
+            [glow::TEXTURE_WIDTH, glow::TEXTURE_HEIGHT]
+                .map(|side| glow.get_tex_level_parameter_i32(glow::TEXTURE_2D, 0, side))
+        };
+        size == self.size().as_ivec2().to_array()
+    }
+
     /// Binds level 0 as what glReadPixels reads.
     pub(super) fn bind_for_reading(&self) {
         // SAFETY: the context is current while the handle lives, and the framebuffer is complete.

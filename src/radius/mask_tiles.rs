@@ -4,7 +4,7 @@ use glam::UVec2;
 
 use crate::error::Result;
 use crate::gl::{Gl, Pass, Program, ShaderSource, Target, Texture, TextureFormat, glsl};
-use crate::maps::Mask;
+use crate::mask::Mask;
 
 const MASK: &str = "radius mask";
 

@@ -6,7 +6,7 @@ use glam::UVec2;
 use glow::HasContext as _;
 use varikernel::settings::{Edges, Method, Order, SatBuild, SatSamples, Search, Settings, Storage};
 use varikernel::{
-    AdaptivePipeline, Changed, CountBounds, DensityMap, Error, Frame, Gl, Image, Mask, RadiusMap,
+    AdaptivePipeline, Changed, CountBounds, DensityMap, Error, Frame, Gl, Image, Mask, MaskMaker, RadiusMap,
     RadiusPipeline, reference,
 };
 
@@ -100,6 +100,82 @@ fn a_mask_is_asked_for_exactly_where_the_settings_say_so() {
     mismatch(pipeline(true).render(&map));
     mismatch(pipeline(true).update(&Frame { mask: Some(&large), ..Frame::new(&map) }));
     pipeline(true).update(&Frame { mask: Some(&mask), ..Frame::new(&map) }).unwrap();
+}
+
+/// A depth-stencil texture in which the left half has a receiver: depth 0.5 and stencil 5; elsewhere the far plane and 1.
+pub(crate) fn depth_and_stencil(gl: &Gl, size: UVec2) -> glow::Texture {
+    let texel = |x: u32| {
+        let depth = if x < size.x / 2 { 0x0080_0000_u32 } else { 0x00FF_FFFF };
+        depth << 8 | if x < size.x / 2 { 5 } else { 1 }
+    };
+    let texels: Vec<u32> = (0..size.x * size.y).map(|index| texel(index % size.x)).collect();
+    let glow = gl.glow();
+    // SAFETY: the context is current, and the slice holds a texel for each pixel.
+    unsafe {
+        let texture = glow.create_texture().unwrap();
+        glow.bind_texture(glow::TEXTURE_2D, Some(texture));
+        glow.tex_image_2d(
+            glow::TEXTURE_2D,
+            0,
+            glow::DEPTH24_STENCIL8.cast_signed(),
+            size.x.cast_signed(),
+            size.y.cast_signed(),
+            0,
+            glow::DEPTH_STENCIL,
+            glow::UNSIGNED_INT_24_8,
+            glow::PixelUnpackData::Slice(Some(bytemuck::cast_slice(&texels))),
+        );
+        texture
+    }
+}
+
+#[test]
+fn depth_and_stencil_of_a_host_become_a_mask() {
+    for open in [egl, osmesa] {
+        let gl = open();
+        let density = sparse_map(140, 67);
+        let question = search(9, 12, Edges::Scale);
+        let expected = reference::radius_by_table(&density, question);
+        let half = |left: bool| {
+            let mask = Image::from_fn(density.size(), |x, _| u8::from((x < density.size().x / 2) == left));
+            expected.where_needed(&mask)
+        };
+        let map = upload(&gl, &density, fast(question).search);
+        let settings = Settings { masked: true, ..fast(question) };
+        let mut pipeline = RadiusPipeline::new(&gl, map.size(), map.format(), settings).unwrap();
+        let mut maker = MaskMaker::new(&gl, map.size()).unwrap();
+        let texture = depth_and_stencil(&gl, map.size());
+        let mut radii =
+            |mask: &Mask| read(pipeline.update(&Frame { mask: Some(mask), ..Frame::new(&map) }).unwrap());
+        assert_same(&radii(maker.from_depth(texture, false).unwrap()), &half(true), "nearer than 1");
+        // 5 and 1 share the lowest bit.
+        assert_same(&radii(maker.from_stencil(texture, 1, 0xFF).unwrap()), &half(false), "stencil 1");
+        assert_same(&radii(maker.from_stencil(texture, 1, 1).unwrap()), &expected, "the lowest bit");
+        assert_same(&radii(maker.from_stencil(texture, 7, 4).unwrap()), &half(true), "the third bit");
+        // Reversed, no depth here is that of the far plane.
+        assert_same(&radii(maker.from_depth(texture, true).unwrap()), &expected, "more than 0");
+        let other = depth_and_stencil(&gl, UVec2::new(9, 9));
+        for texture in [other, map_texture(&gl)] {
+            let result = maker.from_depth(texture, false).map(|_| ());
+            assert!(matches!(result, Err(Error::Mismatch { .. })), "{result:?}");
+        }
+        // After an error, the maker is as good as before.
+        assert_same(&radii(maker.from_depth(texture, false).unwrap()), &half(true), "again");
+    }
+}
+
+/// A texture without depth.
+fn map_texture(gl: &Gl) -> glow::Texture {
+    let glow = gl.glow();
+    // SAFETY: the context is current.
+    unsafe {
+        let texture = glow.create_texture().unwrap();
+        glow.bind_texture(glow::TEXTURE_2D, Some(texture));
+        let nothing = glow::PixelUnpackData::Slice(None);
+        let format = glow::R8.cast_signed();
+        glow.tex_image_2d(glow::TEXTURE_2D, 0, format, 140, 67, 0, glow::RED, glow::UNSIGNED_BYTE, nothing);
+        texture
+    }
 }
 
 /// Random counts in a random rectangle, which is returned.

@@ -13,7 +13,9 @@ use varikernel::pipeline::shader_sources;
 use varikernel::settings::{
     Edges, Faults, Matching, Method, Order, SatBuild, SatSamples, Search, Settings, Split, Storage, Variation,
 };
-use varikernel::{AdaptivePipeline, CountBounds, DensityMap, Gl, RadiusPipeline, context, reference};
+use varikernel::{
+    AdaptivePipeline, CountBounds, DensityMap, Gl, MaskMaker, RadiusPipeline, context, reference,
+};
 
 use crate::support::{random_map, search, working_candidates};
 
@@ -73,6 +75,8 @@ fn all_settings() -> Vec<Settings> {
 
 fn all_sources() -> Vec<ShaderSource> {
     let mut sources = BTreeMap::from(Unit::ALL.map(|unit| (unit.source().fragment(), unit.source())));
+    let mask = MaskMaker::shader_source();
+    sources.insert(mask.fragment(), mask);
     for settings in all_settings() {
         for format in [TextureFormat::R32Uint, TextureFormat::R32Float] {
             let census = AdaptivePipeline::shader_source(format, &Settings::default());

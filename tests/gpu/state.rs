@@ -7,9 +7,13 @@ use std::ffi::c_void;
 
 use glam::UVec2;
 use glow::HasContext as _;
-use varikernel::settings::{Edges, Method, Settings};
-use varikernel::{CountBounds, DensityMap, Gl, RadiusMap, RadiusPipeline, context};
+use varikernel::settings::{Edges, Method, Order, Search, Settings};
+use varikernel::{
+    AdaptivePipeline, Changed, CountBounds, DensityMap, Frame, Gl, Image, Mask, MaskMaker, RadiusMap,
+    RadiusPipeline, context,
+};
 
+use crate::frames;
 use crate::support::{random_map, search, working_candidates};
 
 /// States with as many integer values as given; nearly all that OpenGL 3.3 core has outside of objects.
@@ -32,7 +36,13 @@ const STATES: &[(&str, u32, usize)] = &[
     ("colour clear value", glow::COLOR_CLEAR_VALUE, 4),
     ("depth mask", glow::DEPTH_WRITEMASK, 1),
     ("depth function", glow::DEPTH_FUNC, 1),
+    ("depth range", glow::DEPTH_RANGE, 2),
     ("stencil function", glow::STENCIL_FUNC, 1),
+    ("stencil reference", glow::STENCIL_REF, 1),
+    ("stencil bits", glow::STENCIL_VALUE_MASK, 1),
+    ("stencil fail", glow::STENCIL_FAIL, 1),
+    ("stencil back function", glow::STENCIL_BACK_FUNC, 1),
+    ("stencil back pass", glow::STENCIL_BACK_PASS_DEPTH_PASS, 1),
     ("stencil mask", glow::STENCIL_WRITEMASK, 1),
     ("cull face", glow::CULL_FACE_MODE, 1),
     ("front face", glow::FRONT_FACE, 1),
@@ -200,7 +210,11 @@ impl Host {
             glow.clear_color(1.0, 0.0, 1.0, 0.0);
             glow.depth_mask(false);
             glow.depth_func(glow::NEVER);
+            glow.depth_range_f32(0.25, 0.75);
             glow.stencil_func(glow::NEVER, 1, 2);
+            glow.stencil_func_separate(glow::BACK, glow::LESS, 3, 4);
+            glow.stencil_op(glow::ZERO, glow::INVERT, glow::INCR);
+            glow.stencil_op_separate(glow::BACK, glow::KEEP, glow::DECR, glow::REPLACE);
             glow.stencil_mask(3);
             glow.cull_face(glow::FRONT_AND_BACK);
             glow.front_face(glow::CW);
@@ -271,6 +285,8 @@ fn check(choice: &context::DeviceChoice) {
         DensityMap::borrow(gl, texture, CountBounds::UNKNOWN).unwrap();
         assert_unchanged(&host, &before, "DensityMap::borrow");
     }
+    let bounded = DensityMap::upload(gl, &density, CountBounds::of(&density, question)).unwrap();
+    follow_frames(&host, &before, &bounded, &expected);
     varikernel::gl::time(gl, || Ok(())).unwrap();
     assert_unchanged(&host, &before, "time");
 
@@ -285,8 +301,59 @@ fn check(choice: &context::DeviceChoice) {
     let empty = unsafe { gl.glow().create_texture() }.unwrap();
     assert!(DensityMap::borrow(gl, empty, CountBounds::UNKNOWN).is_err());
     assert_unchanged(&host, &before, "DensityMap::borrow that fails");
-    drop((other, map));
+    drop((other, bounded, map));
     assert_unchanged(&host, &before, "dropping everything");
+}
+
+/// The calls of a host that tells what changed.
+fn follow_frames(
+    host: &Host,
+    before: &[(String, Vec<i32>)],
+    map: &DensityMap,
+    expected: &varikernel::reference::Radii,
+) {
+    let gl = &host.gl;
+    let question = search(25, 8, Edges::Scale);
+    let usual = Settings { search: Search { order: Order::Bracketed, ..question }, ..Settings::default() };
+    let mask = Mask::upload(gl, &Image::filled(map.size(), 1)).unwrap();
+    assert_unchanged(host, before, "Mask::upload");
+    let mut masked =
+        RadiusPipeline::new(gl, map.size(), map.format(), Settings { masked: true, ..usual }).unwrap();
+    let rectangle = Changed::Rectangle { first: UVec2::new(3, 4), size: UVec2::new(5, 6) };
+    for changed in [Changed::Everything, rectangle, Changed::Nothing] {
+        let frame = Frame { density: map, mask: Some(&mask), changed };
+        let radii = masked.update(&frame).unwrap();
+        assert_unchanged(host, before, "RadiusPipeline::update");
+        assert_eq!(radii.read().unwrap(), expected.radius, "{changed:?} under the host's state");
+    }
+    masked.update(&Frame { density: map, mask: Some(&mask), changed: Changed::Added }).unwrap();
+    assert_unchanged(host, before, "RadiusPipeline::update with added photons");
+    masked.set_order(Order::Forward).unwrap();
+    assert_unchanged(host, before, "RadiusPipeline::set_order");
+
+    let mut adaptive = AdaptivePipeline::new(gl, map.size(), map.format(), usual).unwrap();
+    assert_unchanged(host, before, "AdaptivePipeline::new");
+    for _ in 0..3 {
+        let radii = adaptive.update(&Frame::new(map)).unwrap();
+        assert_eq!(radii.read().unwrap(), expected.radius, "adaptive under the host's state");
+        assert_unchanged(host, before, "AdaptivePipeline::update");
+    }
+
+    let mut maker = MaskMaker::new(gl, map.size()).unwrap();
+    let radii = masked.radii().texture();
+    assert!(maker.from_depth(radii, false).is_err());
+    assert_unchanged(host, before, "MaskMaker::from_depth that fails");
+    let depth = frames::depth_and_stencil(gl, map.size());
+    // SAFETY: the context is current; the helper has bound its texture.
+    unsafe {
+        gl.glow().bind_texture(glow::TEXTURE_2D, None);
+        let (_, unit5) = before.iter().find(|(name, _)| name == "2D texture of unit 5").unwrap();
+        let name = u32::try_from(unit5[0]).ok().and_then(std::num::NonZeroU32::new).unwrap();
+        gl.glow().bind_texture(glow::TEXTURE_2D, Some(glow::NativeTexture(name)));
+    }
+    maker.from_depth(depth, false).unwrap();
+    maker.from_stencil(depth, 5, 0xFF).unwrap();
+    assert_unchanged(host, before, "MaskMaker");
 }
 
 /// The first EGL device that works.

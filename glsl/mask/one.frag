@@ -1,0 +1,7 @@
+// Sets every pixel that gets here: the depth or stencil test has let it through.
+layout(location = 0) out uint passed;
+
+void main()
+{
+    passed = 1u;
+}

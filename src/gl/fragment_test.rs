@@ -1,0 +1,202 @@
+//! Which fragments a host's depth or stencil buffer lets through, written as a mask.
+
+use glow::HasContext as _;
+
+use super::{Gl, Pass, StateGuard, Target, error_name};
+use crate::error::{Error, Result};
+
+/// What a fragment has to pass.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum FragmentTest {
+    /// The bits of the stencil value that are set in `bits` equal those of `reference`.
+    Stencil {
+        /// The value to compare with.
+        reference: u8,
+        /// The bits that count.
+        bits: u8,
+    },
+    /// The depth is not that of the far plane: less than 1, or more than 0 where depth is reversed.
+    Depth {
+        /// Whether the far plane is at 0.
+        reversed: bool,
+    },
+}
+
+impl FragmentTest {
+    /// GL_DEPTH_STENCIL_ATTACHMENT fits both kinds of test, GL_DEPTH_ATTACHMENT textures without stencil.
+    fn attachments(self) -> &'static [u32] {
+        match self {
+            Self::Stencil { .. } => &[glow::DEPTH_STENCIL_ATTACHMENT, glow::STENCIL_ATTACHMENT],
+            Self::Depth { .. } => &[glow::DEPTH_STENCIL_ATTACHMENT, glow::DEPTH_ATTACHMENT],
+        }
+    }
+}
+
+/// Draws `pass` over `target`, cleared to 0, where the host's `texture` of depth or stencil passes `test`.
+///
+/// # Errors
+/// [`Error::Mismatch`] if the texture can't be attached to a target of this size; those of the pass.
+pub(crate) fn fill_where(
+    pass: Pass<'_>,
+    gl: &Gl,
+    texture: glow::Texture,
+    test: FragmentTest,
+    target: &mut Target,
+) -> Result<()> {
+    let _state = StateGuard::new(gl);
+    let _tests = Tests::save(gl);
+    target.clear(&[0]);
+    attach(gl, target, texture, test)?;
+    // SAFETY: the context is current while the handle lives.
+    unsafe {
+        let glow = gl.glow();
+        match test {
+            FragmentTest::Stencil { reference, bits } => {
+                glow.enable(glow::STENCIL_TEST);
+                glow.disable(glow::DEPTH_TEST);
+                glow.stencil_func(glow::EQUAL, i32::from(reference), u32::from(bits));
+                glow.stencil_op(glow::KEEP, glow::KEEP, glow::KEEP);
+            }
+            FragmentTest::Depth { reversed } => {
+                glow.disable(glow::STENCIL_TEST);
+                glow.enable(glow::DEPTH_TEST);
+                glow.depth_mask(false);
+                // The triangle lies at depth 0.5 whatever the vertex stage does; this puts it on the far plane.
+                let (far, function) = if reversed { (0.0, glow::LESS) } else { (1.0, glow::GREATER) };
+                glow.depth_range_f32(far, far);
+                glow.depth_func(function);
+            }
+        }
+    }
+    let drawn = pass.fill(target);
+    // SAFETY: the framebuffer is bound by the pass, or by `attach`.
+    unsafe { detach(gl, test) };
+    drawn
+}
+
+fn attach(gl: &Gl, target: &Target, texture: glow::Texture, test: FragmentTest) -> Result<()> {
+    let glow = gl.glow();
+    let mut status = glow::FRAMEBUFFER_UNSUPPORTED;
+    for &attachment in test.attachments() {
+        // SAFETY: the context is current; a name that is no texture is an error that is asked for.
+        unsafe {
+            target.bind_for_drawing();
+            glow.framebuffer_texture_2d(
+                glow::DRAW_FRAMEBUFFER,
+                attachment,
+                glow::TEXTURE_2D,
+                Some(texture),
+                0,
+            );
+            status = match glow.get_error() {
+                glow::NO_ERROR => glow.check_framebuffer_status(glow::DRAW_FRAMEBUFFER),
+                code => code,
+            };
+            if status == glow::FRAMEBUFFER_COMPLETE && target.has_size_of(texture) {
+                return Ok(());
+            }
+            glow.framebuffer_texture_2d(glow::DRAW_FRAMEBUFFER, attachment, glow::TEXTURE_2D, None, 0);
+        }
+    }
+    let size = target.size();
+    let got = match status {
+        glow::FRAMEBUFFER_COMPLETE => "one of another size".to_owned(),
+        glow::INVALID_ENUM..=glow::CONTEXT_LOST => format!("one that answers {}", error_name(status)),
+        _ => format!("framebuffer status {status:#06x}"),
+    };
+    let what = match test {
+        FragmentTest::Stencil { .. } => "stencil",
+        FragmentTest::Depth { .. } => "depth",
+    };
+    Err(Error::Mismatch {
+        what: "host's depth or stencil texture",
+        expected: format!("a GL_TEXTURE_2D with {what}, of {} x {}", size.x, size.y),
+        got,
+    })
+}
+
+/// Lets go of the host's texture.
+unsafe fn detach(gl: &Gl, test: FragmentTest) {
+    for &attachment in test.attachments() {
+        // SAFETY: the caller has bound our framebuffer.
+        unsafe {
+            gl.glow().framebuffer_texture_2d(glow::DRAW_FRAMEBUFFER, attachment, glow::TEXTURE_2D, None, 0);
+        }
+    }
+}
+
+/// The host's depth and stencil tests, put back when dropped.
+struct Tests {
+    gl: Gl,
+    enabled: [bool; 2],
+    /// Function, reference and bits; failing, passing without and with depth: of front and back.
+    stencil: [[i32; 6]; 2],
+    depth_function: i32,
+    depth_mask: bool,
+    depth_range: [f32; 2],
+}
+
+const CAPABILITIES: [u32; 2] = [glow::STENCIL_TEST, glow::DEPTH_TEST];
+const FACES: [u32; 2] = [glow::FRONT, glow::BACK];
+
+impl Tests {
+    fn save(gl: &Gl) -> Self {
+        let glow = gl.glow();
+        // SAFETY: the context is current while the handle lives; these states have one value, the range two.
+        unsafe {
+            let front = [
+                glow::STENCIL_FUNC,
+                glow::STENCIL_REF,
+                glow::STENCIL_VALUE_MASK,
+                glow::STENCIL_FAIL,
+                glow::STENCIL_PASS_DEPTH_FAIL,
+                glow::STENCIL_PASS_DEPTH_PASS,
+            ];
+            let back = [
+                glow::STENCIL_BACK_FUNC,
+                glow::STENCIL_BACK_REF,
+                glow::STENCIL_BACK_VALUE_MASK,
+                glow::STENCIL_BACK_FAIL,
+                glow::STENCIL_BACK_PASS_DEPTH_FAIL,
+                glow::STENCIL_BACK_PASS_DEPTH_PASS,
+            ];
+            let mut depth_range = [0.0; 2];
+            glow.get_parameter_f32_slice(glow::DEPTH_RANGE, &mut depth_range);
+            Self {
+                gl: gl.clone(),
+                enabled: CAPABILITIES.map(|capability| glow.is_enabled(capability)),
+                stencil: [front, back].map(|face| face.map(|state| glow.get_parameter_i32(state))),
+                depth_function: glow.get_parameter_i32(glow::DEPTH_FUNC),
+                depth_mask: glow.get_parameter_bool(glow::DEPTH_WRITEMASK),
+                depth_range,
+            }
+        }
+    }
+}
+
+impl Drop for Tests {
+    fn drop(&mut self) {
+        let glow = self.gl.glow();
+        // SAFETY: the context is current while the handle lives; every value was read from it.
+        unsafe {
+            for (capability, enabled) in CAPABILITIES.into_iter().zip(self.enabled) {
+                if enabled {
+                    glow.enable(capability);
+                } else {
+                    glow.disable(capability);
+                }
+            }
+            for (face, [function, reference, bits, fail, depth_fail, pass]) in
+                FACES.into_iter().zip(self.stencil)
+            {
+                glow.stencil_func_separate(face, function.cast_unsigned(), reference, bits.cast_unsigned());
+                let [fail, depth_fail, pass] = [fail, depth_fail, pass].map(i32::cast_unsigned);
+                glow.stencil_op_separate(face, fail, depth_fail, pass);
+            }
+            glow.depth_func(self.depth_function.cast_unsigned());
+            glow.depth_mask(self.depth_mask);
+            let [near, far] = self.depth_range;
+            glow.depth_range_f32(near, far);
+        }
+    }
+}
