@@ -24,7 +24,7 @@ impl Mask {
     /// Makes a texture of `mask`.
     ///
     /// # Errors
-    /// [`Error::TooLarge`](crate::Error::TooLarge); [`Error::Gl`](crate::Error::Gl) when memory runs out.
+    /// [`Error::TooLarge`]; [`Error::Gl`] when memory runs out.
     pub fn upload(gl: &Gl, mask: &Image<u8>) -> Result<Self> {
         let _state = StateGuard::new(gl);
         let texture = Texture::new(gl, TextureFormat::R8Uint, mask.size(), 1)?;
@@ -36,7 +36,7 @@ impl Mask {
     /// Uses a texture that the host owns and keeps alive as long as this; its contents may change between frames.
     ///
     /// # Errors
-    /// [`Error::Mismatch`](crate::Error::Mismatch) unless it is a GL_TEXTURE_2D of one of the formats above, with level 0
+    /// [`Error::Mismatch`] unless it is a GL_TEXTURE_2D of one of the formats above, with level 0
     /// as its base and red where red belongs.
     pub fn borrow(gl: &Gl, texture: glow::Texture) -> Result<Self> {
         let _state = StateGuard::new(gl);

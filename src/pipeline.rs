@@ -220,16 +220,15 @@ impl RadiusPipeline {
         }
         let settings = Settings { search: Search { order, ..self.settings.search }, ..self.settings };
         let known = self.resting.iter().position(|(resting, _)| *resting == order);
-        let new = match known {
-            Some(index) => self.resting.swap_remove(index).1,
-            None => {
-                settings.validate()?;
-                let passes = driver_limits::passes(self.gl.info(), &settings)?;
-                let _state = StateGuard::new(&self.gl);
-                let search = RadiusSearch::new(&self.gl, self.size, self.density_format, &settings, passes)?;
-                self.gl.check("setting up a search")?;
-                search
-            }
+        let new = if let Some(index) = known {
+            self.resting.swap_remove(index).1
+        } else {
+            settings.validate()?;
+            let passes = driver_limits::passes(self.gl.info(), &settings)?;
+            let _state = StateGuard::new(&self.gl);
+            let search = RadiusSearch::new(&self.gl, self.size, self.density_format, &settings, passes)?;
+            self.gl.check("setting up a search")?;
+            search
         };
         self.resting.push((old, std::mem::replace(&mut self.search, new)));
         self.settings = settings;

@@ -29,7 +29,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("certificate", &["exactness", "gl", "maps", "structure"]),
     (
         "pipeline",
-        &["certificate", "exactness", "gl", "driver_limits", "frame", "maps", "radius", "structure"],
+        &["certificate", "exactness", "gl", "driver_limits", "frame", "maps", "mask", "radius", "structure"],
     ),
     ("planner", &["exactness"]),
     ("adaptive", &["exactness", "frame", "gl", "maps", "pipeline", "planner", "structure"]),

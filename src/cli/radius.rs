@@ -26,6 +26,7 @@ use report::{MapReport, Report, Timing};
 
 /// Find, for each pixel, the smallest box that holds at least n photons.
 #[derive(Debug, clap::Args)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
 pub(crate) struct Args {
     /// Photon density map, counts per pixel: EXR (one f16, f32 or u32 channel), PNG (8 or 16-bit grey) or NPY.
     map: PathBuf,

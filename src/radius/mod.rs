@@ -31,8 +31,8 @@ pub(crate) struct RadiusSearch {
 
 #[derive(Debug)]
 enum Ordered {
-    Stepwise(stepwise::Stepwise),
-    Bracketed(bracketed::Bracketed),
+    Stepwise(Box<stepwise::Stepwise>),
+    Bracketed(Box<bracketed::Bracketed>),
 }
 
 impl RadiusSearch {
@@ -45,9 +45,11 @@ impl RadiusSearch {
     ) -> Result<Self> {
         let order = match settings.search.order {
             Order::Forward | Order::Binary => {
-                Ordered::Stepwise(stepwise::Stepwise::new(gl, size, density, settings, passes)?)
+                Ordered::Stepwise(Box::new(stepwise::Stepwise::new(gl, size, density, settings, passes)?))
             }
-            Order::Bracketed => Ordered::Bracketed(bracketed::Bracketed::new(gl, size, density, settings)?),
+            Order::Bracketed => {
+                Ordered::Bracketed(Box::new(bracketed::Bracketed::new(gl, size, density, settings)?))
+            }
         };
         Ok(Self {
             order,

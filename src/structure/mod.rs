@@ -46,7 +46,7 @@ pub(crate) enum Structure {
     /// A mipmap chain: summed (naive or split into blocks) or averaged by the driver.
     Mipmap(mipmap::Mipmap),
     /// A summed-area table.
-    SummedAreaTable(summed_area_table::SummedAreaTable),
+    SummedAreaTable(Box<summed_area_table::SummedAreaTable>),
 }
 
 impl Structure {
@@ -56,9 +56,9 @@ impl Structure {
             Method::NaiveMipmap | Method::AveragedMipmap | Method::Pyramid => {
                 Self::Mipmap(mipmap::Mipmap::new(gl, size, density, settings)?)
             }
-            Method::SummedAreaTable => {
-                Self::SummedAreaTable(summed_area_table::SummedAreaTable::new(gl, size, density, settings)?)
-            }
+            Method::SummedAreaTable => Self::SummedAreaTable(Box::new(
+                summed_area_table::SummedAreaTable::new(gl, size, density, settings)?,
+            )),
         })
     }
 

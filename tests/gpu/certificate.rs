@@ -148,11 +148,11 @@ fn variations_and_totals_past_32_bits_are_certified() {
 fn places(size: UVec2, random: &mut Random) -> Vec<UVec2> {
     let last = size - 1;
     let mut places = vec![UVec2::ZERO, last, UVec2::new(last.x, 0), UVec2::new(0, last.y)];
-    for _ in 0..1 + size.x * size.y / 16 {
+    for _ in 0..=size.x * size.y / 16 {
         let (x, y) = (random.below(size.x), random.below(size.y));
         places.extend([UVec2::new(x, 0), UVec2::new(last.x, y), UVec2::new(x, y)]);
     }
-    places.sort_by_key(|place| place.to_array());
+    places.sort_by_key(UVec2::to_array);
     places.dedup();
     places
 }

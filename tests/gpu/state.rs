@@ -251,6 +251,8 @@ fn assert_unchanged(host: &Host, before: &[(String, Vec<i32>)], call: &str) {
 
 fn check(choice: &context::DeviceChoice) {
     let host = Host::new(choice);
+    let size = UVec2::new(12, 19);
+    let depth = frames::depth_and_stencil(&host.gl, size);
     let usual = host.snapshot();
     host.set_everything();
     let before = host.snapshot();
@@ -258,7 +260,7 @@ fn check(choice: &context::DeviceChoice) {
     assert!(changed > 80, "only {changed} of {} states are unusual", before.len());
 
     let gl = &host.gl;
-    let density = random_map(12, 19, 4);
+    let density = random_map(size.x, size.y, 4);
     let question = search(25, 8, Edges::Scale);
     let expected = varikernel::reference::radius(&density, question);
     let map = DensityMap::upload(gl, &density, CountBounds::UNKNOWN).unwrap();
@@ -286,7 +288,7 @@ fn check(choice: &context::DeviceChoice) {
         assert_unchanged(&host, &before, "DensityMap::borrow");
     }
     let bounded = DensityMap::upload(gl, &density, CountBounds::of(&density, question)).unwrap();
-    follow_frames(&host, &before, &bounded, &expected);
+    follow_frames(&host, &before, &bounded, &expected, depth);
     varikernel::gl::time(gl, || Ok(())).unwrap();
     assert_unchanged(&host, &before, "time");
 
@@ -311,6 +313,7 @@ fn follow_frames(
     before: &[(String, Vec<i32>)],
     map: &DensityMap,
     expected: &varikernel::reference::Radii,
+    depth: glow::Texture,
 ) {
     let gl = &host.gl;
     let question = search(25, 8, Edges::Scale);
@@ -343,14 +346,6 @@ fn follow_frames(
     let radii = masked.radii().texture();
     assert!(maker.from_depth(radii, false).is_err());
     assert_unchanged(host, before, "MaskMaker::from_depth that fails");
-    let depth = frames::depth_and_stencil(gl, map.size());
-    // SAFETY: the context is current; the helper has bound its texture.
-    unsafe {
-        gl.glow().bind_texture(glow::TEXTURE_2D, None);
-        let (_, unit5) = before.iter().find(|(name, _)| name == "2D texture of unit 5").unwrap();
-        let name = u32::try_from(unit5[0]).ok().and_then(std::num::NonZeroU32::new).unwrap();
-        gl.glow().bind_texture(glow::TEXTURE_2D, Some(glow::NativeTexture(name)));
-    }
     maker.from_depth(depth, false).unwrap();
     maker.from_stencil(depth, 5, 0xFF).unwrap();
     assert_unchanged(host, before, "MaskMaker");

@@ -25,7 +25,7 @@ const DOUBLING: &str = "sat doubling";
 pub(super) struct Doubling {
     spare: Target,
     seed: Program,
-    doubling: Program,
+    step: Program,
     settings: Settings,
 }
 
@@ -34,7 +34,7 @@ impl Doubling {
         Ok(Self {
             spare,
             seed: Program::new(gl, &structure::seed_source(SEED, density, settings))?,
-            doubling: Program::new(gl, &doubling_source(settings))?,
+            step: Program::new(gl, &doubling_source(settings))?,
             settings: *settings,
         })
     }
@@ -52,7 +52,7 @@ impl Doubling {
             if self.settings.faults.swapped_axes { (IVec2::Y, IVec2::X) } else { (IVec2::X, IVec2::Y) };
         for (axis, side) in [(horizontal, size.x), (vertical, size.y)] {
             for (index, stride) in strides(self.settings.sat_samples, side) {
-                let mut pass = Pass::new(DOUBLING, &self.doubling)
+                let mut pass = Pass::new(DOUBLING, &self.step)
                     .read("table", table.texture())
                     .set("axis", axis)
                     .set("stride", stride);

@@ -47,7 +47,7 @@ struct Addition {
 
 #[derive(Debug)]
 enum Build {
-    Doubling(doubling::Doubling),
+    Doubling(Box<doubling::Doubling>),
     Scan(Box<scan::Scan>),
 }
 
@@ -58,7 +58,7 @@ impl SummedAreaTable {
             table: target()?,
             build: match settings.sat_build {
                 SatBuild::Doubling => {
-                    Build::Doubling(doubling::Doubling::new(gl, target()?, density, settings)?)
+                    Build::Doubling(Box::new(doubling::Doubling::new(gl, target()?, density, settings)?))
                 }
                 SatBuild::Scan => Build::Scan(Box::new(scan::Scan::new(gl, size, density, settings)?)),
             },
