@@ -22,6 +22,7 @@ use report::{MapReport, Report, Timing};
 
 /// Find, for each pixel, the smallest box that holds at least n photons.
 #[derive(Debug, clap::Args)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
 pub(crate) struct Args {
     /// Photon density map, counts per pixel: EXR (one f16, f32 or u32 channel), PNG (8 or 16-bit grey) or NPY.
     map: PathBuf,
@@ -60,7 +61,7 @@ pub(crate) struct Args {
     #[arg(long, value_enum, default_value_t = SatSamples::Four)]
     sat_samples: SatSamples,
 
-    /// Number in which sums are kept.
+    /// Number in which sums are kept; u16 is for the summed-area table, where no box holds 2^16 photons.
     #[arg(long, value_enum, default_value_t = Storage::U32)]
     storage: Storage,
 
@@ -158,7 +159,11 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     tracing::info!(renderer = gl.info().renderer, "opened");
     check_fits(args, &counts, gl.info())?;
 
-    let density = DensityMap::upload(&gl, &counts, CountBounds::of(&counts, settings.search))?;
+    let bounds = match settings.storage {
+        Storage::U16 => CountBounds::of_boxes(&counts, settings.search),
+        Storage::F32 | Storage::U32 => CountBounds::of(&counts, settings.search),
+    };
+    let density = DensityMap::upload(&gl, &counts, bounds)?;
     let mut pipeline =
         RadiusPipeline::new(&gl, counts.size(), density.format(), settings).map_err(explain)?;
     let plan = pipeline.plan(&density).map_err(explain)?;
