@@ -21,7 +21,7 @@ impl DensityMap {
     /// Makes a texture of `counts`.
     ///
     /// # Errors
-    /// [`Error::TooLarge`](crate::Error::TooLarge); [`Error::Gl`](crate::Error::Gl) when memory runs out.
+    /// [`Error::TooLarge`]; [`Error::Gl`] when memory runs out.
     pub fn upload(gl: &Gl, counts: &Image<u32>, bounds: CountBounds) -> Result<Self> {
         let _state = StateGuard::new(gl);
         let texture = Texture::new(gl, TextureFormat::R32Uint, counts.size(), 1)?;
@@ -37,7 +37,7 @@ impl DensityMap {
     /// and MR alone prove it exact.
     ///
     /// # Errors
-    /// [`Error::Mismatch`](crate::Error::Mismatch) unless it is a GL_TEXTURE_2D in GL_R32UI, GL_R32F or GL_R8UI, with
+    /// [`Error::Mismatch`] unless it is a GL_TEXTURE_2D in GL_R32UI, GL_R32F or GL_R8UI, with
     /// level 0 as its base and red where red belongs.
     pub fn borrow(gl: &Gl, texture: glow::Texture, bounds: CountBounds) -> Result<Self> {
         let _state = StateGuard::new(gl);
@@ -87,8 +87,8 @@ impl RadiusMap {
     /// the host keeps both alive as long as this.
     ///
     /// # Errors
-    /// [`Error::Mismatch`](crate::Error::Mismatch) unless they are GL_TEXTURE_2D in GL_R32UI and GL_R8UI, of one size, with
-    /// level 0 as their base and red where red belongs; [`Error::Gl`](crate::Error::Gl) if the driver can't draw to them.
+    /// [`Error::Mismatch`] unless they are GL_TEXTURE_2D in GL_R32UI and GL_R8UI, of one size, with
+    /// level 0 as their base and red where red belongs; [`Error::Gl`] if the driver can't draw to them.
     pub fn borrow(gl: &Gl, radii: glow::Texture, limited: Option<glow::Texture>) -> Result<Self> {
         let _state = StateGuard::new(gl);
         let mut textures = vec![Texture::borrow(gl, radii)?];
@@ -130,7 +130,7 @@ impl RadiusMap {
     /// Reads the radii back; waits for the GPU.
     ///
     /// # Errors
-    /// [`Error::Gl`](crate::Error::Gl) if the driver fails, as when the context is lost.
+    /// [`Error::Gl`] if the driver fails, as when the context is lost.
     pub fn read(&self) -> Result<Image<u32>> {
         let _state = StateGuard::new(self.gl());
         let radii = self.target.texture().read(0);
@@ -141,7 +141,7 @@ impl RadiusMap {
     /// Reads the mask back, if it was asked for; waits for the GPU.
     ///
     /// # Errors
-    /// [`Error::Gl`](crate::Error::Gl) if the driver fails, as when the context is lost.
+    /// [`Error::Gl`] if the driver fails, as when the context is lost.
     pub fn read_limited(&self) -> Result<Option<Image<u8>>> {
         let _state = StateGuard::new(self.gl());
         let mask = self.limited().map(|texture| texture.read(0));
