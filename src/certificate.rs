@@ -3,11 +3,12 @@
 //! Counts never shrink as a box grows, and neither does the share that the scaled test asks for. So R is the smallest
 //! radius whose box holds enough if, and only if, the box of R does (or R is MR) and that of R - 1 does not (or R is
 //! 1): two boxes a pixel. Both are counted in the summed-area table, which is proved as well: it is the table of the
-//! counts if each count is the sum that the table gives for that one pixel, modulo 2^32 where entries wrap.
+//! counts if each count is the sum that the table gives for that one pixel, modulo 2^32 or 2^16 where entries wrap.
 //! [`exactness`] says that the boxes themselves do not. Together, the density map alone proves radii and table.
 //!
-//! - Cost: two passes and a wait for their result. Radii: 8 fetches of the table and 1 of the radius a pixel; table: 5.
-//!   One byte a pixel of memory, allocated with the first proof.
+//! - Cost: two passes and a wait for their result. Radii: 8 fetches of the table and 1 of the radius a pixel, 2.2 probe
+//!   passes on llvmpipe at 1024², whatever the map, MR and edge rule. Table: 5 fetches, 1.2 probe passes.
+//! - Memory: one byte a pixel, allocated with the first proof.
 //! - Proved pixels are discarded, and a GL_SAMPLES_PASSED query counts the others.
 
 use glam::UVec2;

@@ -3,9 +3,9 @@
 //! Three facts carry the rules (S counts the photons of a box, T is its area, I its area inside the map):
 //!
 //! 1. An unsigned table that wraps still gives the right S while the *box* holds less than 2^32, since the four
-//!    texels are added modulo 2^32; the total does not matter.
+//!    texels are added modulo 2^32; the total does not matter. In 16 bits, the same holds of 2^16.
 //! 2. `min(count, n)` in place of each count changes no radius: a box with a pixel of n or more holds enough either
-//!    way, and in the others nothing is clamped. Then S <= n I, so T n < 2^32 is enough for any map at all.
+//!    way, and in the others nothing is clamped. Then S <= n I, so T n < 2^32 (2^16) is enough for any map at all.
 //! 3. f32 holds every whole number up to 2^24; a table in f32 is exact while its *total*, its largest entry, stays
 //!    there, and a pyramid or a brute-force sum while each box does.
 //!
@@ -65,15 +65,26 @@ impl CountBounds {
     /// The bounds of `density` itself; boxes are looked at only where the total does not settle it.
     #[must_use]
     pub fn of(density: &Image<u32>, search: Search) -> Self {
+        Self::where_total_exceeds(F32_MAX, U32_MAX, density, search)
+    }
+
+    /// As [`of`](Self::of), but close enough for [`Storage::U16`]: boxes are looked at unless the whole map fits one.
+    #[must_use]
+    pub fn of_boxes(density: &Image<u32>, search: Search) -> Self {
+        Self::where_total_exceeds(U16_MAX, U16_MAX, density, search)
+    }
+
+    /// Looks at boxes where the total exceeds `total_limit`, at boxes of clamped counts where those exceed `box_limit`.
+    fn where_total_exceeds(total_limit: u64, box_limit: u64, density: &Image<u32>, search: Search) -> Self {
         let total = density.values().iter().map(|&count| u64::from(count)).sum();
-        if total <= F32_MAX {
+        if total <= total_limit {
             return Self::total_at_most(total);
         }
         let densest = |counts: &Image<u32>| {
             crate::reference::Table::new(counts).densest_box(search.largest_counted_radius())
         };
         let densest_box = densest(density);
-        let densest_clamped_box = if densest_box <= U32_MAX {
+        let densest_clamped_box = if densest_box <= box_limit {
             densest_box
         } else {
             densest(&density.map(|count| count.min(search.min_photons)))
@@ -106,6 +117,7 @@ impl CountBounds {
 }
 
 const U32_MAX: u64 = u32::MAX as u64;
+const U16_MAX: u64 = u16::MAX as u64;
 const F32_MAX: u64 = 1 << 24;
 
 /// How counts are taken in so that the sums stay right.
@@ -133,26 +145,28 @@ pub fn plan(settings: &Settings, size: UVec2, bounds: CountBounds) -> Result<Pla
     let densest_box = bounds.box_of(settings);
     match (settings.method, settings.storage) {
         (Method::AveragedMipmap, _) => Ok(unclamped),
-        (_, Storage::U32) => {
+        (_, Storage::U32 | Storage::U16) => {
+            let (bits, limit, remedy) = match (settings.storage, search.order) {
+                (Storage::U16, _) => (16, U16_MAX, "keep the table in u32 (storage u32), or lower n or MR"),
+                (_, Order::Bracketed) => {
+                    (32, U32_MAX, "search in binary order, whose boxes are smaller, or lower n or MR")
+                }
+                _ => (32, U32_MAX, "lower n or MR, or scale the counts down"),
+            };
             let clamped_by_n = largest_area(settings, size) * u64::from(search.min_photons);
             let clamped_box = clamped_by_n.min(bounds.clamped_box_of(settings));
-            if densest_box <= U32_MAX {
+            if densest_box <= limit {
                 Ok(unclamped)
-            } else if clamped_box <= U32_MAX {
+            } else if clamped_box <= limit {
                 Ok(Plan { count_limit: search.min_photons, ..unclamped })
             } else {
                 inexact(
                     format!(
-                        "a box of radius {} may hold {} photons, and 32-bit sums end at {U32_MAX}",
+                        "a box of radius {} may hold {} photons, and {bits}-bit sums end at {limit}",
                         search.max_radius,
                         known(clamped_box.min(densest_box))
                     ),
-                    match search.order {
-                        Order::Bracketed => {
-                            "search in binary order, whose boxes are smaller, or lower n or MR"
-                        }
-                        _ => "lower n or MR, or scale the counts down",
-                    },
+                    remedy,
                 )
             }
         }

@@ -250,7 +250,7 @@ impl RadiusPipeline {
 
     /// Proves what the last [`search`](Self::search) found, from `density` alone: each radius, each limited pixel, and
     /// each entry of the table. Waits for the GPU; shaders are compiled by the first call. See
-    /// [`certificate`](crate::certificate).
+    /// [`certificate`].
     ///
     /// # Errors
     /// As [`search`](Self::search), also for a pipeline with masks; [`Error::Setting`] unless the method is the summed-area table; [`Error::Inexact`]

@@ -7,5 +7,5 @@ layout(location = 0) out SUM sum;
 void main()
 {
     ivec2 p = ivec2(gl_FragCoord.xy);
-    sum = texelFetch(before, p, 0).r + texelFetch(added, p, 0).r;
+    sum = wrapped(texelFetch(before, p, 0).r + texelFetch(added, p, 0).r);
 }

@@ -31,4 +31,5 @@ void main()
         sum += texel(p - axis * (i * stride));
     }
 #endif
+    sum = wrapped(sum);
 }

@@ -6,5 +6,5 @@ layout(location = 0) out SUM photons;
 void main()
 {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
-    photons = all(lessThan(pixel, map_size)) ? photons_at(pixel) : SUM(0);
+    photons = all(lessThan(pixel, map_size)) ? wrapped(photons_at(pixel)) : SUM(0);
 }

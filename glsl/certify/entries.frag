@@ -20,7 +20,7 @@ void main()
     uint sum = here - (cut.x ? left : 0u) - (cut.y ? below : 0u) + (all(cut) ? corner : 0u);
     // An f32 may hold what is no whole number.
     bool whole = SUM(here) == texelFetch(table, p, 0).r;
-    if (whole && sum == to_count(photons_at(p))) {
+    if (whole && wrapped(sum) == wrapped(to_count(photons_at(p)))) {
         discard;
     }
 }

@@ -14,7 +14,7 @@ use varikernel::context::{self, DeviceChoice};
 use varikernel::image::{ReadOptions, check_writable, read_counts};
 use varikernel::measure::bench::{self, BenchSettings, MapSource, Progress, Protocol, Report};
 use varikernel::measure::rivals::Rival;
-use varikernel::settings::{Edges, MAX_RADIUS_LIMIT, Method, Order, SatBuild, SatSamples};
+use varikernel::settings::{Edges, MAX_RADIUS_LIMIT, Method, Order, SatBuild, SatSamples, Storage};
 use varikernel::synth::Kind;
 
 use super::Outcome;
@@ -67,6 +67,10 @@ pub(crate) struct Args {
     /// Samples a pass when the summed-area table is built by doubling.
     #[arg(long, value_enum, value_delimiter = ',', default_value = "2,4")]
     sat_samples: Vec<SatSamples>,
+
+    /// Numbers in which summed-area tables are kept; u16 is left out where a box could hold 2^16 photons.
+    #[arg(long, value_enum, value_delimiter = ',', default_value = "u32")]
+    storage: Vec<Storage>,
 
     /// Time rivals on the processor as well: an exact scanline search on one core and on all, and a k-d tree of the
     /// photons (edges zero only).
@@ -155,6 +159,7 @@ fn settings(args: &Args) -> BenchSettings {
         methods: args.methods.clone(),
         sat_builds: args.sat_build.clone(),
         sat_samples: args.sat_samples.clone(),
+        storages: args.storage.clone(),
         searches: args.searches.clone(),
         min_photons: args.min_photons.clone(),
         max_radius: args.max_radius.clone(),

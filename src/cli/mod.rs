@@ -43,7 +43,7 @@ pub(crate) struct Cli {
 #[derive(Debug, Subcommand)]
 enum Verb {
     Radius(radius::Args),
-    Bench(bench::Args),
+    Bench(Box<bench::Args>),
     Reproduce(reproduce::Args),
     Compare(compare::Args),
     Synth(synth::Args),

@@ -68,7 +68,7 @@ pub(crate) struct Args {
     #[arg(long, value_enum, default_value_t = SatSamples::Four)]
     sat_samples: SatSamples,
 
-    /// Number in which sums are kept.
+    /// Number in which sums are kept; u16 is for the summed-area table, where no box holds 2^16 photons.
     #[arg(long, value_enum, default_value_t = Storage::U32)]
     storage: Storage,
 
@@ -172,7 +172,11 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
 
     let choice = planned(args, settings, &counts);
     let settings = choice.as_ref().map_or(settings, |choice| choice.settings);
-    let density = DensityMap::upload(&gl, &counts, CountBounds::of(&counts, settings.search))?;
+    let bounds = match settings.storage {
+        Storage::U16 => CountBounds::of_boxes(&counts, settings.search),
+        Storage::F32 | Storage::U32 => CountBounds::of(&counts, settings.search),
+    };
+    let density = DensityMap::upload(&gl, &counts, bounds)?;
     let mut pipeline =
         RadiusPipeline::new(&gl, counts.size(), density.format(), settings).map_err(explain)?;
     let plan = pipeline.plan(&density).map_err(explain)?;

@@ -198,6 +198,8 @@ pub enum Storage {
     F32,
     /// 32-bit unsigned integer: right while every box holds less than 2^32, even where the table wraps.
     U32,
+    /// 16-bit unsigned integer: right while every box holds less than 2^16. For the summed-area table.
+    U16,
 }
 
 /// Variations of a method that the thesis leaves to future work in chapter 6, to be timed: each gives the same radii.
@@ -368,6 +370,17 @@ impl Settings {
                 value: "scan".to_owned(),
                 reason: "a scan adds integers; keep the sums in u32, or build by doubling".to_owned(),
             });
+        }
+        if self.storage == Storage::U16 {
+            let refuse = |reason: &str| {
+                Err(Error::Setting { name: "storage", value: "u16".to_owned(), reason: reason.to_owned() })
+            };
+            if self.method != Method::SummedAreaTable {
+                return refuse("only the summed-area table, whose sums may wrap, is kept in 16 bits");
+            }
+            if self.faults != Faults::NONE {
+                return refuse("the listings do not wrap their sums; run them in u32 or f32");
+            }
         }
         if self.search.order == Order::Bracketed {
             let refuse = |reason: &str| {

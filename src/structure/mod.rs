@@ -142,12 +142,16 @@ fn format(settings: &Settings) -> TextureFormat {
     match storage(settings) {
         Storage::F32 => TextureFormat::R32Float,
         Storage::U32 => TextureFormat::R32Uint,
+        Storage::U16 => TextureFormat::R16Uint,
     }
 }
 
 /// Adds the number type of the sums.
 fn number(source: ShaderSource, settings: &Settings) -> ShaderSource {
-    source.define_if(storage(settings) == Storage::F32, "SUM_F32").file(crate::gl::glsl!("common/sum.glsl"))
+    source
+        .define_if(storage(settings) == Storage::F32, "SUM_F32")
+        .define_if(storage(settings) == Storage::U16, "SUM_U16")
+        .file(crate::gl::glsl!("common/sum.glsl"))
 }
 
 /// Adds access to the density map, in the number type of the sums.

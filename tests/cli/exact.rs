@@ -105,6 +105,8 @@ fn softpipe_gives_the_same_bits() {
         "sat -r 8 --search forward",
         "sat -r 8 --sat-samples 16 --edges zero",
         "sat -r 8 --storage f32",
+        "sat -r 8 --storage u16 --certify",
+        "sat -r 8 --storage u16 --sat-build doubling",
         "brute-force -r 8",
         "brute-force -r 8 --search forward --edges zero --storage f32",
     ] {
@@ -170,6 +172,22 @@ fn tables_certify_themselves() {
     }
     let answer = place.answer("radius cornell.exr -o radius.npy --certify");
     assert!(answer.contains("certified  yes, every radius"), "{answer}");
+}
+
+#[test]
+fn tables_in_16_bits_are_exact_where_boxes_fit_and_refused_elsewhere() {
+    let place = Workplace::with_cornell();
+    place.answer("synth sparse -o map.npy --size 500x300 --density 1");
+    for options in ["", "--edges zero --search forward", "--sat-build doubling --sat-samples 8"] {
+        let report = place.json(&format!(
+            "radius map.npy -o radius.npy -r 12 --storage u16 --verify --certify --json {options}"
+        ));
+        assert!(report["map"]["photons"].as_u64().unwrap() > 1 << 16);
+        assert_eq!((&report["verify"]["wrong_pixels"], &report["plan"]["exact"]), (&0.into(), &true.into()));
+    }
+    let refused = place.run("radius cornell.exr -o radius.npy --storage u16").code(2);
+    let words = String::from_utf8_lossy(&refused.get_output().stderr).into_owned();
+    assert!(words.contains("16-bit sums end at 65535") && words.contains("storage u32"), "{words}");
 }
 
 #[test]

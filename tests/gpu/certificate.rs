@@ -13,7 +13,7 @@ use varikernel::{
 };
 
 use crate::radius::cases;
-use crate::support::{Random, egl, exact_variants, osmesa, random_map, search, sparse_map};
+use crate::support::{Random, egl, exact_variants, fits_16_bits, osmesa, random_map, search, sparse_map};
 
 const PROVED: Certificate = Certificate { unproved_radii: 0, wrong_entries: 0 };
 
@@ -26,7 +26,7 @@ struct Searched {
 
 impl Searched {
     fn new(gl: &Gl, density: &Image<u32>, settings: Settings) -> Self {
-        let map = DensityMap::upload(gl, density, CountBounds::of(density, settings.search)).unwrap();
+        let map = DensityMap::upload(gl, density, CountBounds::of_boxes(density, settings.search)).unwrap();
         let mut pipeline = RadiusPipeline::new(gl, map.size(), map.format(), settings).unwrap();
         pipeline.render(&map).unwrap();
         Self { gl: gl.clone(), map, pipeline }
@@ -97,9 +97,10 @@ fn u32_texture(gl: &Gl, values: &Image<u32>) -> glow::Texture {
 fn certify_everywhere(gl: &Gl) {
     for (name, density, min_photons, max_radius) in cases() {
         for edges in [Edges::Zero, Edges::Scale] {
-            let tables = exact_variants(search(min_photons, max_radius, edges))
-                .into_iter()
-                .filter(|settings| settings.method == Method::SummedAreaTable);
+            let tables =
+                exact_variants(search(min_photons, max_radius, edges)).into_iter().filter(|settings| {
+                    settings.method == Method::SummedAreaTable && fits_16_bits(&density, settings)
+                });
             for settings in tables {
                 for limited_mask in [false, true] {
                     let settings = Settings { limited_mask, ..settings };
@@ -131,6 +132,7 @@ fn variations_and_totals_past_32_bits_are_certified() {
         sat_build: SatBuild::Doubling,
         ..Settings::default()
     };
+    let in_16_bits = Settings { search: search(100, 5, Edges::Scale), storage: Storage::U16, ..usual };
     // With n of 25, the larger boxes of a bracketed search fit, since counts are clamped: the table is that of clamped ones.
     let bracketed = Search { order: Order::Bracketed, min_photons: 25, ..usual.search };
     for settings in [
@@ -139,6 +141,8 @@ fn variations_and_totals_past_32_bits_are_certified() {
         Settings { sat_build: SatBuild::Scan, ..usual },
         Settings { variation: Some(Variation::UnconditionalFetches), ..usual },
         Settings { variation: Some(Variation::UnfinishedTexels), ..usual },
+        in_16_bits,
+        Settings { sat_build: SatBuild::Scan, ..in_16_bits },
     ] {
         assert_eq!(Searched::new(&gl, &heavy, settings).certify(), PROVED, "{settings:?}");
     }
@@ -249,12 +253,21 @@ fn radii_of_the_host_and_of_other_methods_are_certified_without_a_search() {
 fn a_count_that_changed_after_the_build_is_counted() {
     let gl = egl();
     let mut random = Random(9);
-    for build in [SatBuild::Doubling, SatBuild::Scan] {
+    for (storage, build) in [
+        (Storage::F32, SatBuild::Doubling),
+        (Storage::U32, SatBuild::Scan),
+        (Storage::U16, SatBuild::Doubling),
+        (Storage::U16, SatBuild::Scan),
+    ] {
         let mut density = random_map(37, 20, 3);
         let name = u32_texture(&gl, &density);
         let map = DensityMap::borrow(&gl, name, CountBounds::total_at_most(4 * 37 * 20)).unwrap();
-        let settings =
-            Settings { search: search(25, 16, Edges::Scale), sat_build: build, ..Settings::default() };
+        let settings = Settings {
+            search: search(25, 16, Edges::Scale),
+            sat_build: build,
+            storage,
+            ..Settings::default()
+        };
         let mut pipeline = RadiusPipeline::new(&gl, map.size(), map.format(), settings).unwrap();
         pipeline.render(&map).unwrap();
         assert_eq!(pipeline.certify(&map).unwrap(), PROVED);

@@ -2,7 +2,7 @@
 
 use glam::UVec2;
 use varikernel::measure::Difference;
-use varikernel::settings::{Edges, Exactness, Method, Order, SatBuild, Search, Settings, Storage};
+use varikernel::settings::{Edges, Exactness, Faults, Method, Order, SatBuild, Search, Settings, Storage};
 use varikernel::{CountBounds, DensityMap, Error, Gl, Image, RadiusPipeline, reference};
 
 use crate::support::{Random, assert_same, egl, exact_variants, on_gpu, random_map, search};
@@ -107,6 +107,64 @@ fn f32_is_refused_past_2_to_24_and_rightly_so() {
     assert!(difference.wrong_pixels > 0, "the refusal would be needless");
     let in_u32 = on_gpu(&gl, &density, Settings { storage: Storage::U32, ..waived });
     assert_same(&in_u32, &expected, "u32");
+}
+
+#[test]
+fn tables_in_16_bits_are_exact_while_each_box_fits() {
+    let gl = egl();
+    let in_16_bits = |search| {
+        let all = exact_variants(search).into_iter();
+        let tables: Vec<_> = all.filter(|settings| settings.storage == Storage::U16).collect();
+        assert!(tables.len() >= 8);
+        tables
+    };
+    // The table wraps, or holds counts of 2^32 that are clamped to n, whatever is known of them.
+    let wrapping = random_map(120, 100, 20);
+    assert!(wrapping.values().iter().sum::<u32>() > 1 << 16);
+    let clamped = random_map(30, 40, u32::MAX).map(|count| if count % 8 == 0 { count } else { count % 2 });
+    for (density, min_photons) in [(&wrapping, 300), (&clamped, 4)] {
+        for edges in [Edges::Zero, Edges::Scale] {
+            for settings in in_16_bits(search(min_photons, 5, edges)) {
+                let expected = reference::radius_by_table(density, settings.search);
+                assert_same(&on_gpu(&gl, density, settings), &expected, &format!("{settings:?}"));
+            }
+        }
+    }
+}
+
+#[test]
+fn u16_is_refused_past_2_to_16_and_rightly_so() {
+    let gl = egl();
+    let map = |first| {
+        let mut density = Image::filled(UVec2::new(9, 7), 0);
+        density.set(4, 3, first);
+        density.set(5, 3, 1);
+        density
+    };
+    let settings = Settings {
+        search: search(65_535, 3, Edges::Zero),
+        storage: Storage::U16,
+        limited_mask: true,
+        ..Settings::default()
+    };
+    assert!(!refused(&gl, &map(65_534), settings));
+    assert!(refused(&gl, &map(65_535), settings));
+    assert!(!refused(&gl, &map(65_535), Settings { storage: Storage::U32, ..settings }));
+
+    let waived = Settings { exactness: Exactness::Waived, ..settings };
+    for (density, is_wrong) in [(map(65_534), false), (map(65_535), true)] {
+        let expected = reference::radius(&density, settings.search);
+        let found = on_gpu(&gl, &density, waived);
+        let difference = Difference::between(&found.radius, &expected.radius).unwrap();
+        assert_eq!(difference.wrong_pixels > 0, is_wrong, "the refusal would be needless");
+    }
+    for settings in [
+        Settings { method: Method::BruteForce, ..settings },
+        Settings { method: Method::Pyramid, ..settings },
+        Settings { faults: Faults { border_test: true, ..Faults::NONE }, ..settings },
+    ] {
+        assert!(matches!(settings.validate(), Err(Error::Setting { name: "storage", .. })), "{settings:?}");
+    }
 }
 
 #[test]

@@ -6,7 +6,7 @@ use varikernel::measure::Difference;
 use varikernel::settings::{
     Edges, Matching, Method, Order, SatBuild, SatSamples, Search, Settings, Split, Storage,
 };
-use varikernel::{CountBounds, DensityMap, Gl, Image, RadiusPipeline, reference};
+use varikernel::{CountBounds, DensityMap, Gl, Image, RadiusPipeline, exactness, reference};
 
 /// The first EGL device that works, or the reason why none does.
 pub(crate) fn egl() -> Gl {
@@ -88,12 +88,24 @@ pub(crate) fn exact_variants(search: Search) -> Vec<Settings> {
             let bracketed = Settings { search: Search { order: Order::Bracketed, ..search }, ..table };
             variants.push(bracketed);
             if storage == Storage::U32 {
-                variants.push(Settings { sat_build: SatBuild::Scan, ..table });
-                variants.push(Settings { sat_build: SatBuild::Scan, ..bracketed });
+                for table in [table, bracketed] {
+                    let scanned = Settings { sat_build: SatBuild::Scan, ..table };
+                    variants.extend([scanned, in_16_bits(table), in_16_bits(scanned)]);
+                }
             }
         }
     }
     variants
+}
+
+fn in_16_bits(table: Settings) -> Settings {
+    Settings { storage: Storage::U16, ..table }
+}
+
+/// Whether sums of 16 bits hold what the settings ask for; any other storage is for the test to choose.
+pub(crate) fn fits_16_bits(density: &Image<u32>, settings: &Settings) -> bool {
+    let bounds = CountBounds::of_boxes(density, settings.search);
+    settings.storage != Storage::U16 || exactness::plan(settings, density.size(), bounds).is_ok()
 }
 
 pub(crate) fn search(min_photons: u32, max_radius: u32, edges: Edges) -> Search {
@@ -102,7 +114,7 @@ pub(crate) fn search(min_photons: u32, max_radius: u32, edges: Edges) -> Search 
 
 /// The radii that the GPU finds.
 pub(crate) fn on_gpu(gl: &Gl, density: &Image<u32>, settings: Settings) -> reference::Radii {
-    let bounds = CountBounds::of(density, settings.search);
+    let bounds = CountBounds::of_boxes(density, settings.search);
     let map = DensityMap::upload(gl, density, bounds).unwrap();
     let mut pipeline = RadiusPipeline::new(gl, density.size(), map.format(), settings).unwrap();
     let radii = pipeline.render(&map).unwrap();

@@ -9,5 +9,5 @@ void main()
     uvec4 row = texelFetch(tiles, ivec3(p.x >> 2, p.y >> 3, p.y & 7), 0);
     // Choosing by conditions: an index that varies costs more on llvmpipe.
     uvec2 two = (p.x & 2) == 0 ? row.xy : row.zw;
-    sum = (p.x & 1) == 0 ? two.x : two.y;
+    sum = wrapped((p.x & 1) == 0 ? two.x : two.y);
 }

@@ -8,7 +8,7 @@ use super::rival;
 use super::settings::{BenchSettings, MapInfo};
 use crate::measure::Unit;
 use crate::measure::rivals::Rival;
-use crate::settings::{Edges, Method, Order, SatBuild, SatSamples, Search, Settings};
+use crate::settings::{Edges, Method, Order, SatBuild, SatSamples, Search, Settings, Storage};
 
 /// What is timed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -47,7 +47,7 @@ pub struct Case {
     pub stage: Stage,
     /// The method and, where it counts, how its structure is built: `brute-force`, `naive-mipmap`,
     /// `averaged-mipmap`, `pyramid`, `sat` (search), `sat-doubling-4` or `sat-scan` (build and frame), `copy`, `probe`;
-    /// or a [`Rival`]'s name.
+    /// or a [`Rival`]'s name. A table that is kept in another number than the run's base says so: `sat-scan-u16`.
     pub variant: String,
     /// The map's name.
     pub map: String,
@@ -87,13 +87,13 @@ impl Case {
         }
     }
 
-    fn of(stage: Stage, settings: &Settings, map: &MapInfo) -> Self {
+    fn of(stage: Stage, settings: &Settings, base: Storage, map: &MapInfo) -> Self {
         let Settings { search, method, .. } = *settings;
         let is_table = method == Method::SummedAreaTable;
         let builds = is_table && stage != Stage::Search;
         let sat_samples =
             (builds && settings.sat_build == SatBuild::Doubling).then_some(settings.sat_samples);
-        let variant = match (method, sat_samples) {
+        let mut variant = match (method, sat_samples) {
             (Method::BruteForce, _) => "brute-force".to_owned(),
             (Method::NaiveMipmap, _) => "naive-mipmap".to_owned(),
             (Method::AveragedMipmap, _) => "averaged-mipmap".to_owned(),
@@ -102,6 +102,9 @@ impl Case {
             (Method::SummedAreaTable, None) => "sat".to_owned(),
             (Method::SummedAreaTable, Some(samples)) => format!("sat-doubling-{}", samples.count()),
         };
+        if settings.storage != base {
+            variant += storage_suffix(settings.storage);
+        }
         let searches = stage != Stage::Build;
         Self {
             stage,
@@ -152,6 +155,15 @@ pub(super) fn edges_name(edges: Edges) -> &'static str {
     }
 }
 
+/// The end of a variant's name.
+fn storage_suffix(storage: Storage) -> &'static str {
+    match storage {
+        Storage::F32 => "-f32",
+        Storage::U32 => "-u32",
+        Storage::U16 => "-u16",
+    }
+}
+
 /// What a case runs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Work {
@@ -169,7 +181,7 @@ pub(super) fn cases(settings: &BenchSettings, map: &MapInfo) -> Vec<(Case, Work)
             if pipeline.method == Method::BruteForce && stage != Stage::Frame {
                 continue;
             }
-            let case = Case::of(stage, &pipeline, map);
+            let case = Case::of(stage, &pipeline, settings.base.storage, map);
             // The same build under another question, or the same search in a table built otherwise.
             if !cases.iter().any(|(known, _)| *known == case) {
                 cases.push((case, Work::Pipeline(pipeline)));
@@ -199,6 +211,12 @@ mod tests {
         assert_eq!([Stage::Build, Stage::Search, Stage::Frame].map(|s| count(&settings, s)), [4, 5, 13]);
         settings.edges = vec![Edges::Zero, Edges::Scale];
         assert_eq!([Stage::Build, Stage::Search, Stage::Frame].map(|s| count(&settings, s)), [4, 10, 26]);
+        // Tables in other numbers, but no scan in f32: two more builds, three more searches, six more frames.
+        let usual = settings.clone();
+        settings.edges = vec![Edges::Zero];
+        settings.storages = vec![Storage::U32, Storage::F32];
+        assert_eq!([Stage::Build, Stage::Search, Stage::Frame].map(|s| count(&settings, s)), [6, 8, 19]);
+        settings = usual;
         // The naive mipmap has one search of its own.
         settings.methods = vec![Method::NaiveMipmap];
         assert_eq!([Stage::Build, Stage::Search, Stage::Frame].map(|s| count(&settings, s)), [1, 2, 2]);

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::image::Image;
 use crate::measure::rivals::Rival;
-use crate::settings::{Edges, Method, Order, SatBuild, SatSamples, Search, Settings};
+use crate::settings::{Edges, Method, Order, SatBuild, SatSamples, Search, Settings, Storage};
 
 /// How often a case is repeated.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -44,6 +44,9 @@ pub struct BenchSettings {
     pub sat_builds: Vec<SatBuild>,
     /// Samples a pass of a table that is built by doubling.
     pub sat_samples: Vec<SatSamples>,
+    /// Numbers in which summed-area tables are kept; none stands for that of `base`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub storages: Vec<Storage>,
     /// Orders of the search.
     pub searches: Vec<Order>,
     /// n.
@@ -70,6 +73,7 @@ impl BenchSettings {
             methods: Method::ALL.into_iter().filter(|method| method.is_exact()).collect(),
             sat_builds: vec![SatBuild::Doubling, SatBuild::Scan],
             sat_samples: vec![SatSamples::Two, SatSamples::Four],
+            storages: Vec::new(),
             searches: vec![Order::Forward, Order::Binary, Order::Bracketed],
             min_photons: vec![base.search.min_photons],
             max_radius: vec![base.search.max_radius],
@@ -85,8 +89,9 @@ impl BenchSettings {
         let mut pipelines: Vec<Settings> = Vec::new();
         for &method in &self.methods {
             for search in self.questions() {
-                for (sat_build, sat_samples) in self.builds_of(method) {
-                    let mut settings = Settings { search, method, sat_build, sat_samples, ..self.base };
+                for (storage, sat_build, sat_samples) in self.builds_of(method) {
+                    let mut settings =
+                        Settings { search, method, sat_build, sat_samples, storage, ..self.base };
                     if method == Method::NaiveMipmap {
                         // It has a search of its own, for which the order means nothing.
                         settings.search.order = self.base.search.order;
@@ -101,18 +106,25 @@ impl BenchSettings {
         pipelines
     }
 
-    fn builds_of(&self, method: Method) -> Vec<(SatBuild, SatSamples)> {
+    fn builds_of(&self, method: Method) -> Vec<(Storage, SatBuild, SatSamples)> {
         if method != Method::SummedAreaTable {
-            return vec![(self.base.sat_build, self.base.sat_samples)];
+            return vec![(self.base.storage, self.base.sat_build, self.base.sat_samples)];
         }
+        let storages = if self.storages.is_empty() { &[self.base.storage][..] } else { &self.storages };
         let samples_of = |build: &SatBuild| match build {
             SatBuild::Doubling => self.sat_samples.clone(),
             SatBuild::Scan => vec![self.base.sat_samples],
         };
-        self.sat_builds
-            .iter()
-            .flat_map(|build| samples_of(build).into_iter().map(|samples| (*build, samples)))
-            .collect()
+        let mut builds = Vec::new();
+        for &storage in storages {
+            for &build in &self.sat_builds {
+                // A scan adds integers.
+                if (storage, build) != (Storage::F32, SatBuild::Scan) {
+                    builds.extend(samples_of(&build).into_iter().map(|samples| (storage, build, samples)));
+                }
+            }
+        }
+        builds
     }
 
     /// Every n with every MR, edge rule and order.

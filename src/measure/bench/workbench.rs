@@ -13,7 +13,7 @@ use crate::maps::DensityMap;
 use crate::measure::{Difference, Unit, UnitPass};
 use crate::pipeline::RadiusPipeline;
 use crate::reference;
-use crate::settings::{Search, Settings};
+use crate::settings::{Search, Settings, Storage};
 
 /// A map on the device, and all that was made for it.
 pub(super) struct Workbench {
@@ -35,7 +35,12 @@ impl Workbench {
         }
         let counts = map.make();
         assert_eq!(counts.size(), size, "a map source of another size than it says");
-        let density = DensityMap::upload(gl, &counts, CountBounds::of(&counts, settings.widest()))?;
+        let bounds = if settings.storages.contains(&Storage::U16) {
+            CountBounds::of_boxes(&counts, settings.widest())
+        } else {
+            CountBounds::of(&counts, settings.widest())
+        };
+        let density = DensityMap::upload(gl, &counts, bounds)?;
         Ok(Self {
             gl: gl.clone(),
             counts,

@@ -53,6 +53,7 @@ impl Part {
         BenchSettings {
             methods: self.methods.clone(),
             sat_builds: vec![SatBuild::Doubling],
+            storages: Vec::new(),
             sat_samples: self.sat_samples.clone(),
             searches: self.searches.clone(),
             min_photons: vec![SEARCH.min_photons],

@@ -11,7 +11,7 @@
 //!
 //! - Passes: 7 at any size. Fetches per texel: 1 + 1 of the map, about 1/3 in between, 1 to unpack.
 //! - Memory: the table, its packed form of the same size, and 3/8 + 3/8 of that for the sums in between.
-//! - Exact: as any table in u32; sums wrap alike in every order.
+//! - Exact: as any table in u32 or u16; sums wrap alike in every order. Those in between are u32.
 //!
 //! After Harris, Sengupta and Owens, "Parallel Prefix Sum (Scan) with CUDA" (GPU Gems 3, chapter 39), with draw buffers
 //! in the place of shared memory.
@@ -57,7 +57,7 @@ impl Scan {
             rows: Direction::new(gl, Axis::Rows, grid)?,
             columns: Direction::new(gl, Axis::Columns, grid)?,
             tiles: Stage::new(gl, &tiles_source(density, settings), grid, Some(RUN))?,
-            unpack: Program::new(gl, &unpack_source())?,
+            unpack: Program::new(gl, &unpack_source(settings))?,
         })
     }
 
@@ -196,7 +196,7 @@ fn of_elements<'a>(
 pub(super) fn sources(density: TextureFormat, settings: &Settings) -> Vec<ShaderSource> {
     let mut sources = vec![tile_sums_source(density, settings)];
     sources.extend([Axis::Rows, Axis::Columns].into_iter().flat_map(scan_sources));
-    sources.extend([tiles_source(density, settings), unpack_source()]);
+    sources.extend([tiles_source(density, settings), unpack_source(settings)]);
     sources
 }
 
@@ -223,6 +223,6 @@ fn tiles_source(density: TextureFormat, settings: &Settings) -> ShaderSource {
         .file(glsl!("build/scan/tiles.frag"))
 }
 
-fn unpack_source() -> ShaderSource {
-    ShaderSource::new(UNPACK).file(glsl!("build/scan/unpack.frag"))
+fn unpack_source(settings: &Settings) -> ShaderSource {
+    structure::number(ShaderSource::new(UNPACK), settings).file(glsl!("build/scan/unpack.frag"))
 }
