@@ -13,19 +13,19 @@
 //! #     photons_drawn: u64,
 //! # ) -> varikernel::Result<()> {
 //! use varikernel::settings::{Edges, Order, Search};
-//! use varikernel::{CountBounds, DensityMap, Gl, RadiusPipeline, Settings};
+//! use varikernel::{AdaptivePipeline, CountBounds, DensityMap, Frame, Gl, Settings};
 //!
 //! // SAFETY: the host's context is current on this thread while `gl`, or anything made from it, is used.
 //! let gl = unsafe { Gl::from_loader(loader) }?;
 //!
 //! // The host's texture: GL_R32UI, GL_R32F or GL_R8UI, photons per pixel.
 //! let density = DensityMap::borrow(&gl, host_texture, CountBounds::total_at_most(photons_drawn))?;
-//! let search = Search { min_photons: 25, max_radius: 32, edges: Edges::Scale, order: Order::Binary };
+//! let search = Search { min_photons: 25, max_radius: 32, edges: Edges::Scale, order: Order::Bracketed };
 //! let settings = Settings { search, ..Settings::default() };
-//! let mut pipeline = RadiusPipeline::new(&gl, density.size(), density.format(), settings)?;
+//! let mut pipeline = AdaptivePipeline::new(&gl, density.size(), density.format(), settings)?;
 //!
-//! // Each frame:
-//! let radii = pipeline.render(&density)?;
+//! // Each frame; with `changed` and `mask` it costs only what has changed, where a radius is needed:
+//! let radii = pipeline.update(&Frame::new(&density))?;
 //! let texture = radii.texture(); // a usampler2D for the host's own shaders
 //! # Ok(())
 //! # }
@@ -44,12 +44,15 @@
 //! |---|---|
 //! | `cli`, `main` | the program, built on the public library: one file a verb |
 //! | [`measure`] | how right and how fast a result is: differences, timing runs (`bench`), rivals on the processor (`rivals`), the thesis's tables and claims (`thesis`), both together (`reproduce`), a page of them (`report`) |
+//! | `adaptive` | [`AdaptivePipeline`]: plans each frame by the photons of the ones before |
+//! | [`planner`] | which table, build and search suit a map |
 //! | [`pipeline`] | the stages in order; what a host calls |
 //! | [`certificate`] | proof that a radius map is the definition's, without computing that |
-//! | `radius` | density map and structure in, radius map out |
+//! | `radius` | density map and structure in, radius map out: stepwise as the thesis, or by brackets |
 //! | [`structure`] | brute force, mipmaps, pyramid, summed-area table: a section of the thesis each |
 //! | `driver_limits` | what software renderers would silently get wrong |
-//! | [`maps`] | what flows between the stages, each with its unit |
+//! | [`frame`] | what a host's frame brings, and what differs from the one before |
+//! | [`maps`], `mask` | what flows between the stages, each with its unit; which pixels need a radius |
 //! | [`exactness`] | which sums fit which storage, decided before computing |
 //! | [`reference`](mod@reference) | the definition: the same in plain Rust, without OpenGL |
 //! | `synth` | seeded test maps |
@@ -61,10 +64,11 @@
 //! Each public call puts back what it touches, also when it fails:
 //!
 //! - the current program, vertex array, draw and read framebuffer, and the viewport;
-//! - the active texture unit, and the 2D texture and the sampler of units 0 to 3;
-//! - blending and the colour mask of draw buffers 0 and 1;
+//! - the active texture unit, and the 2D texture, the 2D array texture and the sampler of units 0 to 3;
+//! - blending and the colour mask of draw buffers 0 to 7;
 //! - face culling, scissor test, logic operation, rasteriser discard, primitive restart, clip distances 0 to 7, polygon mode;
-//! - the pixel pack and unpack buffers, and alignment, row length, skips and byte swapping of both.
+//! - the pixel pack and unpack buffers, and alignment, row length, skips and byte swapping of both;
+//! - by [`MaskMaker`] alone: the depth and the stencil test, their functions and operations, depth mask and range.
 //!
 //! Nothing else is touched. GL errors that were pending are taken and logged, so that they are not blamed on the call. A host
 //! may not call while transform feedback or conditional rendering is active, which would swallow the draws; a host's own

@@ -55,7 +55,7 @@ pub(crate) struct Args {
     method: MethodChoice,
 
     /// Order in which radii are tried (thesis 3.5); the naive mipmap has its own. [default: the planner's; with a named
-    /// method, a fault or f32: bracketed for sat without them, else binary]
+    /// method, bracketed for sat in whole numbers without faults, else binary]
     #[arg(long, value_enum)]
     search: Option<Order>,
 
@@ -65,8 +65,9 @@ pub(crate) struct Args {
     sat_build: Option<SatBuild>,
 
     /// Samples a pass when the summed-area table is built by doubling (thesis 4.2).
-    #[arg(long, value_enum, default_value_t = SatSamples::Four)]
-    sat_samples: SatSamples,
+    /// [default: 4]
+    #[arg(long, value_enum)]
+    sat_samples: Option<SatSamples>,
 
     /// Number in which sums are kept; u16 is for the summed-area table, where no box holds 2^16 photons.
     #[arg(long, value_enum, default_value_t = Storage::U32)]
@@ -247,7 +248,7 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
 /// The planner's choice, where nothing else is asked for.
 fn planned(args: &Args, settings: Settings, counts: &Image<u32>) -> Option<Choice> {
     let is_free = matches!(args.method, MethodChoice::Auto)
-        && (args.search, args.sat_build, args.variation) == (None, None, None)
+        && (args.search, args.sat_build, args.sat_samples, args.variation) == (None, None, None, None)
         && settings.faults == Faults::NONE
         && settings.storage == Storage::U32;
     is_free.then(|| {
@@ -353,7 +354,10 @@ fn settings(args: &Args) -> Settings {
     };
     let faults = faults(args);
     // The thesis's listings know neither a scan nor brackets, which are for whole numbers.
-    let is_ours = method == Method::SummedAreaTable && faults == Faults::NONE && args.storage != Storage::F32;
+    let is_ours = method == Method::SummedAreaTable
+        && faults == Faults::NONE
+        && args.storage != Storage::F32
+        && args.sat_samples.is_none();
     let (build, order) =
         if is_ours { (SatBuild::Scan, Order::Bracketed) } else { (SatBuild::Doubling, Order::Binary) };
     Settings {
@@ -367,7 +371,7 @@ fn settings(args: &Args) -> Settings {
         split: args.split,
         matching: args.matching,
         sat_build: args.sat_build.unwrap_or(build),
-        sat_samples: args.sat_samples,
+        sat_samples: args.sat_samples.unwrap_or(SatSamples::Four),
         storage: args.storage,
         faults,
         variation: args.variation,

@@ -8,7 +8,7 @@
 //! tested with the least, and the upper bound is searched with the most. Both tests are monotone in r, as is the
 //! pixel's own between them, so that the result is the definition's.
 //!
-//! A tile of 32 x 32 pixels also says which programs its pixels take, and the vertex stage draws nothing for the others:
+//! A tile of 64 x 64 pixels also says which programs its pixels take, and the vertex stage draws nothing for the others:
 //!
 //! | class | what is known | its pixels |
 //! |---|---|---|
@@ -18,10 +18,19 @@
 //! | edge | scaled counts | brackets of 8, of 2, with loops |
 //! | kept | no changed pixel within the radii of the frame before | stay as they are |
 //!
-//! - Cost, inner: 4 fetches for each of 5 boxes in 64 pixels, 3 in 4, and 1 a pixel, whatever the density and MR. Dense:
+//! - Cost, inner: 4 fetches for each of 6 boxes in 64 pixels, 3 in 4, and 1 a pixel, whatever the density and MR. Dense:
 //!   1 to 2 boxes a pixel. Unreached: nothing. Edge: as inner and about half as much again.
 //! - Memory: 4 bytes a block, 5 a tile: 0.27 of the map together.
-//! - Exact while a box of radius MR + 16 does not wrap, since outer boxes are larger than those of pixels.
+//! - Exact while a box of radius MR + 32 does not wrap, since outer boxes are larger than those of pixels.
+//!
+//! Tried, and not taken (llvmpipe, 1024², in probe passes):
+//!
+//! - the four nearest of a coarse grid, |R(p) - R(q)| <= distance: 2.2 to 3.8 in a first trial; they take as many fetches as
+//!   a box and leave up to 5 candidates;
+//! - the same blocks without classes, with loops everywhere: 3.4 to 4.1, since a loop costs 0.7 there, entered or not;
+//! - blocks of 4 in place of 2, two boxes a pixel: 2.1 to 2.4 for the pixels alone, against 1.3 to 1.6;
+//! - tiles of 32: fewer pixels near edges, but quads of 4 x 4 and 16 x 16 fragments on the way: 0.3 more;
+//! - skipping the box of a pixel whose bracket is decided: llvmpipe computes both sides of every branch.
 
 use glam::UVec2;
 

@@ -22,6 +22,52 @@ fn verify_on_cornell(method: &str, search: usize, edges: usize, storage: usize, 
     assert_eq!(report["plan"]["exact"], true);
 }
 
+/// What the planner chooses, and the parts of the fast path by name.
+#[test]
+fn the_fast_path_is_exact_and_says_what_was_planned() {
+    let place = Workplace::with_cornell();
+    for (options, build, order) in [
+        ("", "scan", "forward"),
+        ("-n 400 -r 128", "scan", "bracketed"),
+        ("--search bracketed", "scan", "bracketed"),
+        ("--search binary --sat-build scan", "scan", "binary"),
+        ("--sat-samples 8", "doubling", "binary"),
+        ("--storage f32", "doubling", "binary"),
+        ("--search bracketed --edges zero -r 300 --device osmesa", "scan", "bracketed"),
+    ] {
+        let report =
+            place.json(&format!("radius cornell.exr -o radius.npy --verify --certify --json {options}"));
+        assert_eq!(report["verify"]["wrong_pixels"], 0, "{options}");
+        assert_eq!(report["verify_limited"]["wrong_pixels"], 0, "{options}");
+        assert_eq!(report["certificate"]["unproved_radii"], 0, "{options}");
+        assert_eq!(report["settings"]["sat_build"], build, "{options}");
+        assert_eq!(report["settings"]["search"]["order"], order, "{options}: {}", report["planned"]);
+        // Who names a part of the method gets that, and no plan.
+        let is_free = !options.contains("--s");
+        assert_eq!(report["planned"].is_string(), is_free, "{options}");
+    }
+}
+
+#[test]
+fn masked_pixels_get_zero() {
+    let place = Workplace::with_cornell();
+    let mask = Image::from_fn(UVec2::splat(512), |x, y| u32::from(x > y));
+    place.put_map("mask.npy", &mask);
+    let report = place.json("radius cornell.exr --mask mask.npy -o radius.npy --verify --json -n 100 -r 64");
+    assert_eq!(report["verify"]["wrong_pixels"], 0);
+    let radius = place.map("radius.npy");
+    for (x, y) in [(0, 0), (100, 300), (511, 511)] {
+        assert_eq!(radius.at(x, y), 0, "({x}, {y}) is masked");
+    }
+    assert!(radius.at(300, 100) > 0);
+    place.put_map("small.npy", &Image::filled(UVec2::new(3, 4), 1));
+    place.refuses(
+        "radius cornell.exr --mask small.npy -o radius.npy",
+        &["small.npy", "3 x 4", "512 x 512", "help"],
+    );
+    place.refuses("radius cornell.exr --mask none.npy -o radius.npy", &["none.npy"]);
+}
+
 /// Every search, edge rule and storage, and any two of them on both devices.
 #[track_caller]
 fn verify_every_setting(method: &str) {
