@@ -4,7 +4,7 @@ use glam::UVec2;
 
 use crate::error::Result;
 use crate::exactness::CountBounds;
-use crate::frame::Frame;
+use crate::frame::{Changed, Frame};
 use crate::gl::{
     Gl, Pass, Program, Readback, ShaderSource, StateGuard, Target, Texture, TextureFormat, glsl,
 };
@@ -63,6 +63,9 @@ impl AdaptivePipeline {
     /// # Errors
     /// Those of [`RadiusPipeline::update`].
     pub fn update(&mut self, frame: &Frame<'_>) -> Result<&RadiusMap> {
+        if frame.changed == Changed::Nothing {
+            return self.pipeline.update(frame);
+        }
         self.plan(frame)?;
         self.pipeline.update(frame)?;
         self.count(frame)?;

@@ -94,9 +94,9 @@ impl BenchSettings {
                         Settings { search, method, sat_build, sat_samples, storage, ..self.base };
                     if method == Method::NaiveMipmap {
                         // It has a search of its own, for which the order means nothing.
-                        settings.search.order = self.base.search.order;
+                        settings.search.order = Order::Binary;
                     }
-                    let is_possible = search.order != Order::Bracketed || method == Method::SummedAreaTable;
+                    let is_possible = settings.search.order != Order::Bracketed || method == Method::SummedAreaTable;
                     if is_possible && !pipelines.contains(&settings) {
                         pipelines.push(settings);
                     }
