@@ -51,6 +51,8 @@
 //! | [`maps`] | what flows between the stages, each with its unit |
 //! | [`exactness`] | which sums fit which storage, decided before computing |
 //! | [`reference`](mod@reference) | the definition: the same in plain Rust, without OpenGL |
+//! | `photon` | scene in, photons out: traced on the CPU, landing after landing, with statistics |
+//! | `scene` | scene files: camera, lights, materials, triangles and spheres; ray casting |
 //! | `synth` | seeded test maps |
 //! | `context` | headless contexts: EGL devices and OSMesa |
 //! | [`gl`] | programs, textures, passes, timers, saved state; with `context` the only unsafe code |
@@ -91,9 +93,13 @@ pub mod gl;
 pub mod image;
 pub mod maps;
 pub mod measure;
+#[cfg(feature = "scene")]
+pub mod photon;
 pub mod pipeline;
 mod radius;
 pub mod reference;
+#[cfg(feature = "scene")]
+pub mod scene;
 pub mod settings;
 pub mod structure;
 #[cfg(feature = "synth")]

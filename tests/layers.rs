@@ -18,6 +18,8 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("gl", &[]),
     ("context", &["gl"]),
     ("reference", &[]),
+    ("scene", &[]),
+    ("photon", &["scene"]),
     ("synth", &[]),
     ("exactness", &["reference"]),
     ("maps", &["exactness", "gl"]),

@@ -27,6 +27,8 @@ pub use atomic::{check_writable, write_atomically};
 pub use attribute::{Attribute, AttributeValue};
 #[cfg(feature = "files")]
 pub use counts::ReadOptions;
+#[cfg(feature = "scene")]
+pub(crate) use files::open_file;
 #[cfg(feature = "files")]
 pub use files::{Format, read_counts, write_counts, write_picture};
 #[cfg(feature = "files")]
