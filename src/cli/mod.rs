@@ -4,6 +4,7 @@ mod bench;
 mod compare;
 mod devices;
 pub(crate) mod output;
+mod photons;
 mod radius;
 mod reproduce;
 mod synth;
@@ -20,6 +21,7 @@ Examples:
   varikernel radius map.exr -o radius.png      a picture of its radius map
   varikernel radius map.exr -o radius.exr --verify --method pyramid
   varikernel compare radius.exr other.npy      how two maps differ
+  varikernel photons -o photons.npy            trace photons through a Cornell box
   varikernel reproduce                         the thesis's numbers from this machine
   varikernel devices                           the OpenGL devices found here";
 
@@ -44,6 +46,7 @@ enum Verb {
     Bench(bench::Args),
     Reproduce(reproduce::Args),
     Compare(compare::Args),
+    Photons(photons::Args),
     Synth(synth::Args),
     Devices(devices::Args),
 }
@@ -59,6 +62,7 @@ pub(crate) fn run(cli: Cli) -> Result<Outcome> {
     match cli.verb {
         Verb::Radius(args) => radius::run(&args),
         Verb::Compare(args) => compare::run(&args),
+        Verb::Photons(args) => photons::run(&args),
         Verb::Synth(args) => synth::run(&args),
         Verb::Reproduce(args) => reproduce::run(&args),
         Verb::Devices(args) => devices::run(&args),

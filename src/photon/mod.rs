@@ -1,19 +1,23 @@
 //! Photons: from the lights into the scene, landing after landing (thesis 2.4, 2.6.1), on the CPU.
 
 mod emission;
+mod files;
 mod landings;
 mod path;
 mod random;
+mod records;
 mod scatter;
 mod tracer;
 
 pub use emission::{Emission, EmittedPhoton};
+pub use files::{PhotonFormat, write};
 pub use landings::{Ends, Landings, Tally};
 pub use scatter::{reflect, refract};
 pub use tracer::{trace, trace_from, trace_from_hits, trace_in_batches};
 
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
+use serde::Serialize;
 
 use crate::{Error, Result};
 
@@ -40,6 +44,14 @@ pub struct Photon {
     pub through_glass: u32,
 }
 
+impl Photon {
+    /// Whether glass has refracted the photon anywhere on its way from the light.
+    #[must_use]
+    pub fn passed_glass(&self) -> bool {
+        self.through_glass != 0
+    }
+}
+
 /// A photon and what it meets first, as rasterised from its light (thesis 2.6.1).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FirstHit {
@@ -52,7 +64,7 @@ pub struct FirstHit {
 }
 
 /// How photons are traced.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct TraceSettings {
     /// Photons that leave the lights, at least 1.
     pub photons: u32,

@@ -15,7 +15,7 @@ macro_rules! asset {
 }
 
 /// All of them, in the order in which they are told.
-pub(super) const SHIPPED: [Shipped; 3] = [
+pub(super) const SHIPPED: [Shipped; 5] = [
     Shipped {
         name: "cornell-glass",
         file: "cornell_glass.toml",
@@ -33,5 +33,17 @@ pub(super) const SHIPPED: [Shipped; 3] = [
         file: "cornell_empty.toml",
         content: asset!("cornell_empty.toml"),
         meshes: &[],
+    },
+    Shipped {
+        name: "mirror-ring",
+        file: "mirror_ring.toml",
+        content: asset!("mirror_ring.toml"),
+        meshes: &[("ring.obj", asset!("ring.obj"))],
+    },
+    Shipped {
+        name: "water",
+        file: "water.toml",
+        content: asset!("water.toml"),
+        meshes: &[("water.obj", asset!("water.obj"))],
     },
 ];
