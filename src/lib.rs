@@ -86,9 +86,13 @@
 
 #[cfg(any(feature = "egl", feature = "osmesa"))]
 pub mod context;
+#[cfg(feature = "render")]
+mod density;
 mod driver_limits;
 pub mod error;
 pub mod exactness;
+#[cfg(feature = "render")]
+mod gbuffer;
 pub mod gl;
 pub mod image;
 pub mod maps;
@@ -98,12 +102,20 @@ pub mod photon;
 pub mod pipeline;
 mod radius;
 pub mod reference;
+#[cfg(feature = "render")]
+pub mod render;
 #[cfg(feature = "scene")]
 pub mod scene;
 pub mod settings;
+#[cfg(feature = "render")]
+mod shade;
+#[cfg(feature = "render")]
+mod splat;
 pub mod structure;
 #[cfg(feature = "synth")]
 pub mod synth;
+#[cfg(feature = "render")]
+pub mod view;
 
 pub use {glam, glow};
 

@@ -6,6 +6,7 @@ mod devices;
 pub(crate) mod output;
 mod photons;
 mod radius;
+mod render;
 mod reproduce;
 mod synth;
 
@@ -17,6 +18,7 @@ use tracing_subscriber::EnvFilter;
 
 const EXAMPLES: &str = "\
 Examples:
+  varikernel render -o picture.png             a glass Cornell box, by photons with variable kernels
   varikernel synth caustic -o map.exr          make a map to try things on
   varikernel radius map.exr -o radius.png      a picture of its radius map
   varikernel radius map.exr -o radius.exr --verify --method pyramid
@@ -42,6 +44,7 @@ pub(crate) struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Verb {
+    Render(render::Args),
     Radius(radius::Args),
     Bench(bench::Args),
     Reproduce(reproduce::Args),
@@ -60,6 +63,7 @@ pub(crate) enum Outcome {
 
 pub(crate) fn run(cli: Cli) -> Result<Outcome> {
     match cli.verb {
+        Verb::Render(args) => render::run(&args),
         Verb::Radius(args) => radius::run(&args),
         Verb::Compare(args) => compare::run(&args),
         Verb::Photons(args) => photons::run(&args),

@@ -127,7 +127,7 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
 }
 
 /// A scene file, or where there is none of this name, a scene that comes with the program.
-fn load(scene: &Path) -> varikernel::Result<Scene> {
+pub(super) fn load(scene: &Path) -> varikernel::Result<Scene> {
     match scene.to_str() {
         Some(name) if !scene.exists() && Scene::shipped_names().any(|shipped| shipped == name) => {
             Scene::shipped(name)
@@ -188,7 +188,7 @@ fn print(report: &Report<'_>) -> Result<()> {
 }
 
 /// 1000, 1_000 or 1e3.
-fn parse_count(text: &str) -> Result<u32> {
+pub(super) fn parse_count(text: &str) -> Result<u32> {
     let number: f64 = text.replace('_', "").parse().context("write it as 1000000 or 1e6")?;
     if number.fract() != 0.0 || !(1.0..=f64::from(u32::MAX)).contains(&number) {
         bail!("it is a whole number from 1 to {}", u32::MAX);

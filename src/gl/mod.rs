@@ -6,6 +6,8 @@
 #![expect(unsafe_code, reason = "OpenGL is a C interface; design rule 8 confines it to this module")]
 
 mod device_info;
+#[cfg(feature = "render")]
+mod geometry;
 mod pass;
 mod program;
 mod source;
@@ -14,6 +16,8 @@ mod texture;
 mod timer;
 
 pub use device_info::DeviceInfo;
+#[cfg(feature = "render")]
+pub(crate) use geometry::Vertices;
 pub(crate) use pass::{Pass, Target};
 pub(crate) use program::Program;
 pub use source::ShaderSource;

@@ -1,26 +1,28 @@
-//! A fragment shader put together from files, defines and a version line.
+//! Shaders put together from files, defines and a version line.
 
 use std::fmt::Write as _;
 
-/// The vertex stage of every pass: one triangle over the whole target.
+/// The vertex stage of every pass but those that draw geometry: one triangle over the whole target.
 pub(crate) const FULL_SCREEN: &str = include_str!("../../glsl/common/full_screen.vert");
 
 /// The GLSL version of every shader.
 pub(crate) const VERSION_LINE: &str = "#version 330 core\n";
 
-/// A fragment shader: a label, defines and the files that follow each other.
+/// The shaders of a program: a label, defines, the files of the fragment shader that follow each other, and those of the
+/// vertex shader where it is not the full-screen one.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ShaderSource {
     label: String,
     defines: Vec<(&'static str, u32)>,
     files: Vec<(&'static str, &'static str)>,
+    vertex_files: Vec<(&'static str, &'static str)>,
 }
 
 impl ShaderSource {
     /// An empty source; `label` names its pass in errors, debug groups and timings.
     #[must_use]
     pub(crate) fn new(label: impl Into<String>) -> Self {
-        Self { label: label.into(), defines: Vec::new(), files: Vec::new() }
+        Self { label: label.into(), defines: Vec::new(), files: Vec::new(), vertex_files: Vec::new() }
     }
 
     /// `#define name value`.
@@ -43,6 +45,14 @@ impl ShaderSource {
         self
     }
 
+    /// The same for the vertex shader, which takes the place of the full-screen one.
+    #[cfg(feature = "render")]
+    #[must_use]
+    pub(crate) fn vertex_file(mut self, (name, text): (&'static str, &'static str)) -> Self {
+        self.vertex_files.push((name, text));
+        self
+    }
+
     /// The pass's label.
     #[must_use]
     pub fn label(&self) -> &str {
@@ -54,33 +64,42 @@ impl ShaderSource {
     /// `#line` restarts the count in each file, so a driver's `2:17` is line 17 of the second file.
     #[must_use]
     pub fn fragment(&self) -> String {
-        let mut text = String::from(VERSION_LINE);
-        for (name, value) in &self.defines {
-            writeln!(text, "#define {name} {value}").expect("writing to a string");
-        }
-        for (number, (name, file)) in (1..).zip(&self.files) {
-            write!(text, "// {name}\n#line 1 {number}\n{file}").expect("writing to a string");
-        }
-        text
+        self.text(&self.files)
     }
 
     /// The whole text of the vertex shader, ready for glShaderSource.
     #[must_use]
     pub fn vertex(&self) -> String {
-        format!("{VERSION_LINE}{FULL_SCREEN}")
+        if self.vertex_files.is_empty() {
+            return format!("{VERSION_LINE}{FULL_SCREEN}");
+        }
+        self.text(&self.vertex_files)
     }
 
-    /// The fragment shader for a reader: each line with the file's number and its own.
+    fn text(&self, files: &[(&str, &str)]) -> String {
+        let mut text = String::from(VERSION_LINE);
+        for (name, value) in &self.defines {
+            writeln!(text, "#define {name} {value}").expect("writing to a string");
+        }
+        for (number, (name, file)) in (1..).zip(files) {
+            write!(text, "// {name}\n#line 1 {number}\n{file}").expect("writing to a string");
+        }
+        text
+    }
+
+    /// The shaders for a reader: each line with the file's number and its own.
     #[must_use]
     pub fn listing(&self) -> String {
         let mut listing = String::new();
         for (name, value) in &self.defines {
             writeln!(listing, "      #define {name} {value}").expect("writing to a string");
         }
-        for (number, (name, file)) in (1..).zip(&self.files) {
-            writeln!(listing, "  file {number}: glsl/{name}").expect("writing to a string");
-            for (line, text) in (1..).zip(file.lines()) {
-                writeln!(listing, "{number}:{line:<4} {text}").expect("writing to a string");
+        for (stage, files) in [("fragment", &self.files), ("vertex", &self.vertex_files)] {
+            for (number, (name, file)) in (1..).zip(files) {
+                writeln!(listing, "  {stage} file {number}: glsl/{name}").expect("writing to a string");
+                for (line, text) in (1..).zip(file.lines()) {
+                    writeln!(listing, "{number}:{line:<4} {text}").expect("writing to a string");
+                }
             }
         }
         listing

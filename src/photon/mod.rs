@@ -42,9 +42,17 @@ pub struct Photon {
     pub surface: u32,
     /// 1 if glass has refracted the photon anywhere on its way from the light, else 0.
     pub through_glass: u32,
+    /// 1 if a mirror or glass has passed the photon on since it last landed or left its light, else 0.
+    pub from_specular: u32,
 }
 
 impl Photon {
+    /// Whether the photon came straight from its light: what direct light counts already.
+    #[must_use]
+    pub fn is_direct(&self) -> bool {
+        self.bounce == 0 && self.from_specular == 0
+    }
+
     /// Whether glass has refracted the photon anywhere on its way from the light.
     #[must_use]
     pub fn passed_glass(&self) -> bool {

@@ -46,6 +46,7 @@ pub(super) fn follow(
                     bounce,
                     surface: hit.surface,
                     through_glass: u32::from(through_glass),
+                    from_specular: u32::from(specular > 0),
                 };
                 landings.push(photon);
                 tally.add(&photon);
