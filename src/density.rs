@@ -11,7 +11,9 @@ use glam::{UVec2, Vec4};
 
 use crate::error::{Error, Result};
 use crate::exactness::CountBounds;
-use crate::gl::{Gl, Pass, Program, ShaderSource, StateGuard, Target, Texture, TextureFormat, Vertices, glsl};
+use crate::gl::{
+    Gl, Pass, Program, ShaderSource, StateGuard, Target, Texture, TextureFormat, Vertices, glsl,
+};
 use crate::image::Image;
 use crate::maps::{DensityMap, PhotonPoints, SurfaceMaps};
 
@@ -71,7 +73,8 @@ impl DensityStage {
         #[expect(clippy::cast_precision_loss, reason = "compared with 2^24 only")]
         if self.drawn as f32 >= MOST && self.read_counts()?.values().iter().any(|&count| count >= MOST) {
             return Err(Error::Inexact {
-                reason: "a pixel holds 2^24 photons or more, where additive blending stops to count".to_owned(),
+                reason: "a pixel holds 2^24 photons or more, where additive blending stops to count"
+                    .to_owned(),
                 remedy: "take fewer photons or a larger picture".to_owned(),
             });
         }

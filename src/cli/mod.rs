@@ -3,6 +3,7 @@
 mod bench;
 mod compare;
 mod devices;
+mod figures;
 pub(crate) mod output;
 mod photons;
 mod radius;
@@ -45,6 +46,7 @@ pub(crate) struct Cli {
 #[derive(Debug, Subcommand)]
 enum Verb {
     Render(render::Args),
+    Figures(figures::Args),
     Radius(radius::Args),
     Bench(bench::Args),
     Reproduce(reproduce::Args),
@@ -64,6 +66,7 @@ pub(crate) enum Outcome {
 pub(crate) fn run(cli: Cli) -> Result<Outcome> {
     match cli.verb {
         Verb::Render(args) => render::run(&args),
+        Verb::Figures(args) => figures::run(&args),
         Verb::Radius(args) => radius::run(&args),
         Verb::Compare(args) => compare::run(&args),
         Verb::Photons(args) => photons::run(&args),

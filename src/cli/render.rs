@@ -1,23 +1,27 @@
 //! `varikernel render`: a scene in, a picture out.
 
 use std::path::{Path, PathBuf};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use anyhow::{Result, bail};
 use glam::UVec2;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
-use varikernel::Error;
 use varikernel::context::{self, DeviceChoice};
 use varikernel::gl::DeviceInfo;
 use varikernel::image::{Attribute, Format, LayerFile, ToneMap, check_writable, write_colours};
 use varikernel::photon::TraceSettings;
-use varikernel::render::{Account, Layers, Progress, Renderer};
+use varikernel::render::{Account, Layers, Progress, Reference, Renderer};
+use varikernel::scene::Scene;
 use varikernel::settings::{Estimate, Kernel, PictureSettings, RadiusChoice};
+use varikernel::{Error, Gl};
 
 use super::photons::{load, parse_count};
 use super::synth::parse_size;
 use super::{Outcome, output};
+
+/// A reference that takes long is saved as often as this.
+const SAVE_EVERY: Duration = Duration::from_secs(20);
 
 /// Render a scene by photons whose kernels fit their density.
 ///
@@ -43,6 +47,11 @@ pub(crate) struct Args {
     /// With --gather: take (c - 1) / c of what c photons give, as a radius that ends at a photon asks for.
     #[arg(long, requires = "gather")]
     count_correction: bool,
+
+    /// Make a reference: each pixel keeps its own photons only, averaged over this many seeds, saved as it goes.
+    #[arg(long, value_name = "SEEDS", num_args = 0..=1, default_missing_value = "16")]
+    #[arg(conflicts_with_all = ["gather", "radius"])]
+    reference: Option<u32>,
 
     /// Print one JSON object instead of a table.
     #[arg(long)]
@@ -154,10 +163,14 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     let scene = load(&args.source.scene)?;
     let gl = context::open(&args.source.device)?;
 
+    if let Some(seeds) = args.reference {
+        return render_reference(args, &gl, &scene, &settings, seeds);
+    }
+
     let begun = Instant::now();
     let bar = Bar::new();
-    let mut renderer =
-        Renderer::new(&gl, &scene, &settings, &trace, &mut |progress| bar.show(progress)).map_err(in_words_of_options)?;
+    let mut renderer = Renderer::new(&gl, &scene, &settings, &trace, &mut |progress| bar.show(progress))
+        .map_err(in_words_of_options)?;
     bar.show(Progress { stage: "picture", done: 0.0 })?;
     let (layers, account) = renderer.picture(&settings)?;
     bar.finish();
@@ -181,10 +194,62 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     Ok(Outcome::Done)
 }
 
+/// Averages seeds, and writes the picture again where the last time is long ago.
+fn render_reference(
+    args: &Args,
+    gl: &Gl,
+    scene: &Scene,
+    settings: &PictureSettings,
+    seeds: u32,
+) -> Result<Outcome> {
+    if seeds == 0 {
+        bail!("--reference 0 is not possible: a mean takes at least 1 seed");
+    }
+    let (trace, tone_map) = (args.source.trace(), args.source.tone_map()?);
+    let bar = Bar::new();
+    let mut reference = Reference::new(gl, scene, settings, &mut |progress| bar.show(progress))?;
+    let mut saved = Instant::now();
+    let mut attributes = attributes(args, &scene.title);
+    attributes.push(Attribute::integer("varikernel.reference_seeds", seeds));
+    for seed in 0..seeds {
+        let trace = TraceSettings { seed: trace.seed.wrapping_add(u64::from(seed)), ..trace };
+        let mut show = |Progress { done, .. }: Progress| {
+            let done = (f64::from(seed) + done) / f64::from(seeds);
+            bar.show(Progress { stage: "reference", done })
+        };
+        reference.add_seed(scene, &trace, &mut show).map_err(in_words_of_options)?;
+        if seed + 1 == seeds || saved.elapsed() > SAVE_EVERY {
+            write(&args.output, &reference.picture()?, &tone_map, &attributes)?;
+            saved = Instant::now();
+        }
+    }
+    bar.finish();
+    if args.json {
+        let report = serde_json::json!({
+            "version": env!("CARGO_PKG_VERSION"),
+            "scene": scene.title,
+            "output": args.output,
+            "photons": trace,
+            "reference_seeds": seeds,
+        });
+        output::print_json(&report)?;
+    } else {
+        output::print_facts(&[
+            ("scene", scene.title.clone()),
+            ("reference", format!("{seeds} seeds of {} photons", trace.photons)),
+            ("written", args.output.display().to_string()),
+        ])?;
+    }
+    Ok(Outcome::Done)
+}
+
 /// Refuses what is neither .exr nor .png, and what can't be written.
 pub(super) fn check_output(path: &Path) -> Result<()> {
     if Format::of(path)? == Format::Npy {
-        bail!("{}: a picture is written as EXR or PNG\nhelp: use a file name that ends in .exr or .png", path.display());
+        bail!(
+            "{}: a picture is written as EXR or PNG\nhelp: use a file name that ends in .exr or .png",
+            path.display()
+        );
     }
     Ok(check_writable(path)?)
 }
@@ -265,7 +330,10 @@ fn print(report: &Report<'_>) -> Result<()> {
         ("renderer", report.device.renderer.clone()),
         ("photons", format!("{emitted} with {landings} landings, {uploaded} uploaded")),
         ("contributing", format!("{contributing}, {share:.1} % of the landings")),
-        ("fragments", format!("{:.1} a contributing photon", fragments / (contributing_or_one(contributing)))),
+        (
+            "fragments",
+            format!("{:.1} a contributing photon", fragments / (contributing_or_one(contributing))),
+        ),
         ("limited", format!("{:.3} % of the pixels found too few photons", 100.0 * limited_share)),
         ("energy", format!("kept to {:.1e}", report.energy_error)),
         ("time", format!("{:.1} s", report.seconds)),

@@ -39,11 +39,7 @@ impl Vertices {
             let failed = |what: String| gl_error(glow, &what);
             owned.buffer = Some(glow.create_buffer().map_err(failed)?);
             glow.bind_buffer(glow::ARRAY_BUFFER, owned.buffer);
-            glow.buffer_data_u8_slice(
-                glow::ARRAY_BUFFER,
-                bytemuck::cast_slice(vertices),
-                glow::STATIC_DRAW,
-            );
+            glow.buffer_data_u8_slice(glow::ARRAY_BUFFER, bytemuck::cast_slice(vertices), glow::STATIC_DRAW);
             for (divisor, array) in (0..).zip(&mut owned.arrays) {
                 *array = Some(glow.create_vertex_array().map_err(failed)?);
                 glow.bind_vertex_array(*array);

@@ -122,8 +122,7 @@ impl StateGuard {
             // Two values, front and back, although a core profile sets them together.
             let mut polygon_mode = [0; 2];
             glow.get_parameter_i32_slice(glow::POLYGON_MODE, &mut polygon_mode);
-            let state =
-                |names: [u32; 2]| names.map(|name| glow.get_parameter_i32(name).cast_unsigned());
+            let state = |names: [u32; 2]| names.map(|name| glow.get_parameter_i32(name).cast_unsigned());
             Self {
                 gl: gl.clone(),
                 program: glow.get_parameter_program(glow::CURRENT_PROGRAM),

@@ -42,6 +42,8 @@ pub use layers::{LayerFile, write_colours};
 #[cfg(feature = "files")]
 pub use picture::Picture;
 #[cfg(feature = "render")]
+pub use picture::picture_of;
+#[cfg(feature = "render")]
 pub use sheet::{Tile, contact_sheet};
 #[cfg(feature = "render")]
 pub use tone::ToneMap;

@@ -38,6 +38,14 @@ const BAR: u32 = 10;
 const TICK: u32 = 3;
 const LABEL_GAP: u32 = 2;
 
+/// The colours of a map alone, a pixel for each value, without a legend.
+#[cfg(feature = "render")]
+#[must_use]
+pub fn picture_of(image: &Image<u32>, picture: &Picture<'_>) -> Image<[u8; 3]> {
+    let colours = ColourMap::new(picture.range.as_ref(), image);
+    image.map(|value| colours.colour(value))
+}
+
 /// Draws the map and its legend.
 pub(super) fn draw(image: &Image<u32>, picture: &Picture<'_>) -> Image<[u8; 3]> {
     let colours = ColourMap::new(picture.range.as_ref(), image);

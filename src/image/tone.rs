@@ -40,8 +40,7 @@ impl ToneMap {
 /// The sRGB transfer function (IEC 61966-2-1), to 8 bits.
 fn encode(linear: f32) -> u8 {
     let linear = linear.clamp(0.0, 1.0);
-    let encoded =
-        if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 };
+    let encoded = if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 };
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 0 to 255")]
     let level = (255.0 * encoded).round() as u8;
     level

@@ -18,7 +18,8 @@ pub(super) struct Dice(Pcg64Mcg);
 impl Dice {
     pub(super) fn new(seed: u64, pixel: u32) -> Self {
         // Odd multiples keep neighbouring pixels and seeds apart; the generator's own seeding mixes them.
-        let number = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ u64::from(pixel).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let number =
+            seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ u64::from(pixel).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         Self(Pcg64Mcg::seed_from_u64(number))
     }
 

@@ -5,7 +5,10 @@
 
 mod direct;
 mod nearest;
+mod reference;
 mod sight;
+
+pub use reference::Reference;
 
 use std::f64::consts::PI;
 
@@ -18,7 +21,7 @@ use crate::gbuffer::{self, SurfaceStage};
 use crate::gl::{Gl, ShaderSource, TextureFormat};
 use crate::image::Image;
 use crate::maps::{ChosenRadius, DensityMap, PhotonPoint, PhotonPoints, SurfaceMaps};
-use crate::photon::{Emission, TraceSettings, trace_in_batches};
+use crate::photon::{Emission, Photon, TraceSettings, trace_in_batches};
 use crate::pipeline::RadiusPipeline;
 use crate::scene::Scene;
 use crate::settings::{Estimate, Kernel, PictureSettings, RadiusChoice, Search, Settings};
@@ -91,7 +94,9 @@ impl Account {
     #[must_use]
     pub fn energy_error(&self) -> f64 {
         let pairs = self.power_in.iter().zip(self.power_out);
-        pairs.map(|(&into, out)| if into > 0.0 { ((out - into) / into).abs() } else { out.abs() }).fold(0.0, f64::max)
+        pairs
+            .map(|(&into, out)| if into > 0.0 { ((out - into) / into).abs() } else { out.abs() })
+            .fold(0.0, f64::max)
     }
 }
 
@@ -100,14 +105,21 @@ impl Account {
 pub struct Renderer {
     gl: Gl,
     size: UVec2,
-    settings: PictureSettings,
-    emitted: u32,
-    landings: u64,
     surfaces: SurfaceMaps,
-    points: PhotonPoints,
     density: DensityStage,
     light: TracedLight,
     bent: Vec<Place>,
+    traced: Traced,
+}
+
+/// Photons, where they are needed.
+#[derive(Debug)]
+struct Traced {
+    emitted: u32,
+    landings: u64,
+    /// Those that may be seen, on the GPU.
+    points: PhotonPoints,
+    /// All of them, if mirrors or glass show places outside of the picture.
     grid: Option<PhotonGrid>,
 }
 
@@ -126,49 +138,17 @@ impl Renderer {
         progress: &mut dyn FnMut(Progress) -> Result<()>,
     ) -> Result<Self> {
         settings.validate()?;
-        let emission = Emission::new(scene, trace)?;
+        Emission::new(scene, trace)?;
         let view = View::new(scene, settings.size);
         let surfaces = SurfaceStage::new(gl)?.draw(scene, view)?;
         progress(Progress { stage: "direct light", done: 0.0 })?;
         let sight = Sight::new(scene, &view);
         let light = direct_light(scene, &view, &sight, settings, progress)?;
 
-        let needs_grid = !sight.bent.is_empty();
-        let (mut seen, mut all) = (Vec::new(), Vec::new());
-        let mut points = PhotonPoints::new(gl);
-        let tally = trace_in_batches(scene, &emission, |photons, followed| {
-            for photon in photons.iter().filter(|photon| !photon.is_direct()) {
-                let point = PhotonPoint::new(photon);
-                if needs_grid {
-                    all.push(point);
-                }
-                if point.may_be_seen(&view) {
-                    seen.push(point);
-                }
-            }
-            if seen.len() >= UPLOAD {
-                points.upload(&seen[..UPLOAD])?;
-                seen.drain(..UPLOAD);
-            }
-            progress(Progress { stage: "photons", done: f64::from(followed) / f64::from(trace.photons) })
-        })?;
-        points.upload(&seen)?;
         let mut density = DensityStage::new(gl, settings.size)?;
-        density.add(&surfaces, &points)?;
-        let grid = needs_grid.then(|| PhotonGrid::new(&all, scene.bounds()));
-        Ok(Self {
-            gl: gl.clone(),
-            size: settings.size,
-            settings: *settings,
-            emitted: trace.photons,
-            landings: tally.total(),
-            surfaces,
-            points,
-            density,
-            light,
-            bent: sight.bent,
-            grid,
-        })
+        let traced = Traced::new(gl, scene, &view, trace, !sight.bent.is_empty(), progress)?;
+        density.add(&surfaces, &traced.points)?;
+        Ok(Self { gl: gl.clone(), size: settings.size, surfaces, density, light, bent: sight.bent, traced })
     }
 
     /// The picture with the radius, kernel and estimate of `settings`; its size and shadow rays are those of before.
@@ -185,12 +165,17 @@ impl Renderer {
             RadiusChoice::Variable => (ChosenRadius::Map(radii), false),
             RadiusChoice::Fixed(radius) => (ChosenRadius::Fixed(radius), true),
         };
-        self.light.seen_through = self.seen_through(settings);
+        let width = match settings.radius {
+            RadiusChoice::Variable => Wanted::Holding(settings.min_photons, settings.max_radius),
+            RadiusChoice::Fixed(radius) => Wanted::Fixed(radius),
+        };
+        self.light.seen_through =
+            seen_through(self.surfaces.view(), &self.bent, self.traced.grid.as_ref(), width, settings.kernel);
         let mut shade = ShadeStage::new(&self.gl, self.size)?;
         let (shaded, irradiance) = match settings.estimate {
             Estimate::Splat => {
                 let mut stage = SplatStage::new(&self.gl, self.size, settings.kernel, fixed)?;
-                let irradiance = stage.splat(&self.surfaces, &self.points, chosen)?;
+                let irradiance = stage.splat(&self.surfaces, &self.traced.points, chosen)?;
                 (shade.shade(&self.surfaces, irradiance, &self.light)?, irradiance.read()?)
             }
             Estimate::Gather { count_correction } => {
@@ -224,42 +209,10 @@ impl Renderer {
 
     fn radius_pipeline(&self, settings: &PictureSettings, density: &DensityMap) -> Result<RadiusPipeline> {
         let usual = Settings::default();
-        let search = Search {
-            min_photons: settings.min_photons,
-            max_radius: settings.max_radius,
-            ..usual.search
-        };
+        let search =
+            Search { min_photons: settings.min_photons, max_radius: settings.max_radius, ..usual.search };
         let settings = Settings { search, limited_mask: true, ..usual };
         RadiusPipeline::new(&self.gl, density.size(), TextureFormat::R32Float, settings)
-    }
-
-    /// Indirect light in mirrors and through glass: the photons around each place that is seen there.
-    fn seen_through(&self, settings: &PictureSettings) -> Image<[f32; 4]> {
-        let mut light = Image::filled(self.size, [0.0; 4]);
-        let Some(grid) = &self.grid else { return light };
-        let view = self.surfaces.view();
-        let found: Vec<DVec3> = self
-            .bent
-            .par_iter()
-            .map(|place| {
-                // The disc of the same area as a box of that radius, if the place were seen straight.
-                let disc = |radius: u32| {
-                    f64::from(2 * radius + 1) * f64::from(view.pixel_side()) * place.distance / PI.sqrt()
-                };
-                let width = match settings.radius {
-                    RadiusChoice::Variable => Width::Holding {
-                        photons: settings.min_photons as usize,
-                        at_most: disc(settings.max_radius),
-                    },
-                    RadiusChoice::Fixed(radius) => Width::Fixed(disc(radius)),
-                };
-                place.share.as_dvec3() * grid.irradiance(place, width, settings.kernel) / PI
-            })
-            .collect();
-        for (place, radiance) in self.bent.iter().zip(found) {
-            add(&mut light, place.pixel, radiance);
-        }
-        light
     }
 
     fn account(
@@ -290,15 +243,54 @@ impl Renderer {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a sum of counts")]
         let contributing = contributing as u64;
         Ok(Account {
-            emitted: self.emitted,
-            landings: self.landings,
-            uploaded: self.points.count(),
+            emitted: self.traced.emitted,
+            landings: self.traced.landings,
+            uploaded: self.traced.points.count(),
             contributing,
             power_in: power_in.to_array(),
             power_out: power_out.to_array(),
             fragments,
             limited_share: f64::from(ended) / f64::from(diffuse.max(1)),
         })
+    }
+}
+
+impl Traced {
+    /// Traces photons; those of direct light are left out.
+    fn new(
+        gl: &Gl,
+        scene: &Scene,
+        view: &View,
+        trace: &TraceSettings,
+        needs_grid: bool,
+        progress: &mut dyn FnMut(Progress) -> Result<()>,
+    ) -> Result<Self> {
+        let emission = Emission::new(scene, trace)?;
+        let (mut seen, mut all) = (Vec::new(), Vec::new());
+        let mut points = PhotonPoints::new(gl);
+        let mut keep = |photons: &[Photon], points: &mut PhotonPoints| {
+            for photon in photons.iter().filter(|photon| !photon.is_direct()) {
+                let point = PhotonPoint::new(photon);
+                if needs_grid {
+                    all.push(point);
+                }
+                if point.may_be_seen(view) {
+                    seen.push(point);
+                }
+            }
+            if seen.len() >= UPLOAD {
+                points.upload(&seen[..UPLOAD])?;
+                seen.drain(..UPLOAD);
+            }
+            Ok(())
+        };
+        let tally = trace_in_batches(scene, &emission, |photons, followed| {
+            keep(photons, &mut points)?;
+            progress(Progress { stage: "photons", done: f64::from(followed) / f64::from(trace.photons) })
+        })?;
+        points.upload(&seen)?;
+        let grid = needs_grid.then(|| PhotonGrid::new(&all, scene.bounds()));
+        Ok(Self { emitted: trace.photons, landings: tally.total(), points, grid })
     }
 }
 
@@ -309,6 +301,47 @@ fn pixel_area(view: &View, position: [f32; 4], normal: [f32; 4]) -> f64 {
     let sight = at(position) - view.position().as_dvec3();
     let slant = at(normal).dot(sight).abs().max(1e-3 * sight.length());
     f64::from(view.pixel_side()).powi(2) * depth.powi(3) / slant
+}
+
+/// How wide the disc of a place in a mirror or behind glass is, in pixels.
+#[derive(Clone, Copy, Debug)]
+enum Wanted {
+    /// Up to the n-th photon, and at most as for this radius.
+    Holding(u32, u32),
+    /// As for this radius.
+    Fixed(u32),
+}
+
+/// Indirect light in mirrors and through glass: the photons around each place that is seen there.
+fn seen_through(
+    view: &View,
+    bent: &[Place],
+    grid: Option<&PhotonGrid>,
+    wanted: Wanted,
+    kernel: Kernel,
+) -> Image<[f32; 4]> {
+    let mut light = Image::filled(view.size(), [0.0; 4]);
+    let Some(grid) = grid else { return light };
+    let found: Vec<DVec3> = bent
+        .par_iter()
+        .map(|place| {
+            // The disc of the same area as a box of that radius, if the place were seen straight.
+            let disc = |radius: u32| {
+                f64::from(2 * radius + 1) * f64::from(view.pixel_side()) * place.distance / PI.sqrt()
+            };
+            let width = match wanted {
+                Wanted::Holding(photons, most) => {
+                    Width::Holding { photons: photons as usize, at_most: disc(most) }
+                }
+                Wanted::Fixed(radius) => Width::Fixed(disc(radius)),
+            };
+            place.share.as_dvec3() * grid.irradiance(place, width, kernel) / PI
+        })
+        .collect();
+    for (place, radiance) in bent.iter().zip(found) {
+        add(&mut light, place.pixel, radiance);
+    }
+    light
 }
 
 /// Direct light at every place that is seen, in rows so that the progress can be told.
@@ -325,7 +358,8 @@ fn direct_light(
     }
     let places = sight.straight.len() + sight.bent.len();
     let mut done = 0;
-    for (list, seed) in [(&sight.straight, settings.seed), (&sight.bent, settings.seed.wrapping_add(1 << 32))] {
+    for (list, seed) in [(&sight.straight, settings.seed), (&sight.bent, settings.seed.wrapping_add(1 << 32))]
+    {
         for (number, part) in (0..).zip(list.chunks(1 << 14)) {
             let found: Vec<DVec3> = part
                 .par_iter()

@@ -28,8 +28,7 @@ pub enum Kernel {
 
 impl Kernel {
     /// All of them.
-    pub const ALL: [Self; 5] =
-        [Self::Box, Self::Cone, Self::Epanechnikov, Self::Silverman, Self::Gaussian];
+    pub const ALL: [Self; 5] = [Self::Box, Self::Cone, Self::Epanechnikov, Self::Silverman, Self::Gaussian];
 
     /// The weight for the square of the distance from the middle, in radii; 1 in the middle, 0 from the edge on.
     #[must_use]
@@ -141,7 +140,11 @@ impl PictureSettings {
             Err(Error::Setting { name, value, reason: reason.to_owned() })
         };
         if self.size.min_element() == 0 {
-            return refuse("size", format!("{} x {}", self.size.x, self.size.y), "a picture has at least one pixel");
+            return refuse(
+                "size",
+                format!("{} x {}", self.size.x, self.size.y),
+                "a picture has at least one pixel",
+            );
         }
         if self.min_photons == 0 {
             return refuse("min_photons", "0".to_owned(), "every box holds 0 photons; ask for at least 1");

@@ -40,9 +40,7 @@ impl GatherStage {
     ) -> Result<&IrradianceMap> {
         let _state = StateGuard::new(&self.gl);
         let pass = surfaces.read_by(Pass::new(LABEL, &self.program)).read("power", power);
-        read_radius(pass, radius)
-            .set("camera", surfaces.view().position())
-            .fill(self.irradiance.target())?;
+        read_radius(pass, radius).set("camera", surfaces.view().position()).fill(self.irradiance.target())?;
         self.gl.check("gathering photons")?;
         Ok(&self.irradiance)
     }
