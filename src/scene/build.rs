@@ -138,15 +138,15 @@ impl Builder<'_> {
             } => {
                 let position = self.place(point.span(), *point.get_ref(), &field("point"))?;
                 let intensity = self.colour(intensity, &field("intensity"), f64::from(f32::MAX))?;
-                let (direction, cos_angle) = match (&entry.direction, &entry.angle_degrees) {
-                    (None, None) => (Vec3::Y, -1.0),
+                let (direction, half_angle) = match (&entry.direction, &entry.angle_degrees) {
+                    (None, None) => (Vec3::Y, std::f32::consts::PI),
                     (Some(direction), Some(angle)) => {
                         let angle = self.number(angle, &field("angle_degrees"), 0.01, 180.0)?;
-                        (self.direction(direction, &field("direction"))?, angle.to_radians().cos())
+                        (self.direction(direction, &field("direction"))?, angle.to_radians())
                     }
                     _ => return wrong("a spot has both direction and angle_degrees"),
                 };
-                LightShape::Point { position, direction, cos_angle, intensity }
+                LightShape::Point { position, direction, half_angle, intensity }
             }
             _ => return wrong("these fields together make no light"),
         };

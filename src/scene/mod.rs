@@ -19,6 +19,7 @@ pub use camera::Camera;
 pub use cast::Hit;
 pub use geometry::{Geometry, Sphere, Triangle, Vertex};
 pub use intersect::{Ray, TriangleEdges, intersect_sphere};
+pub(crate) use light::cap_height;
 pub use light::{Light, LightShape, area};
 pub use material::{Material, Scattering};
 

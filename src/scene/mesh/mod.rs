@@ -118,14 +118,17 @@ pub(super) fn add(
     Ok(())
 }
 
-/// The file's normals, or else the means of the faces around each vertex, by area.
+/// The file's normals, or else the means of the faces around each vertex, by the angle that each has there, so that it does
+/// not matter how a face is cut into triangles.
 fn smooth_normals(part: &Part, triangles: &[&[u32; 3]]) -> Vec<Vec3> {
     let mut sums = vec![DVec3::ZERO; part.positions.len()];
     if part.normals.is_empty() {
         for triangle in triangles {
-            let [a, b, c] = triangle.map(|vertex| part.positions[vertex as usize].as_dvec3());
-            for &vertex in *triangle {
-                sums[vertex as usize] += (b - a).cross(c - a);
+            let corners = triangle.map(|vertex| part.positions[vertex as usize].as_dvec3());
+            for (number, &vertex) in triangle.iter().enumerate() {
+                let to = |step: usize| corners[(number + step) % 3] - corners[number];
+                let (next, previous) = (to(1), to(2));
+                sums[vertex as usize] += next.cross(previous).normalize() * next.angle_between(previous);
             }
         }
     } else {
