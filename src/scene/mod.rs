@@ -6,6 +6,7 @@
 mod build;
 mod camera;
 mod cast;
+mod fields;
 mod format;
 mod geometry;
 mod intersect;

@@ -83,7 +83,10 @@ fn every_format_holds_the_same_landings() {
         assert_eq!(record[..52], vertex[..52], "numbers and bounce");
         for (number, field) in fields[..12].iter().enumerate() {
             let value = f32::from_bits(word(record, 4 * number));
-            assert!(value.is_finite() && field.parse::<f32>().unwrap() == value, "{field}");
+            assert!(
+                value.is_finite() && field.parse::<f32>().unwrap().to_bits() == value.to_bits(),
+                "{field}"
+            );
         }
         assert_eq!(fields[12], word(record, 48).to_string());
         let name: String = (0..7)

@@ -150,6 +150,20 @@ fn damaged_meshes_are_refused() {
 }
 
 #[test]
+fn a_file_cut_anywhere_never_panics() {
+    let obj = [b"mtllib a.mtl\n", SQUARE].concat();
+    let gltf = gltf("corners.bin", "");
+    for (fields, name, content) in [(OBJ, "a.obj", obj.as_slice()), (GLTF, "a.gltf", gltf.as_bytes())] {
+        let mut refused = 0;
+        for length in 0..content.len() {
+            let files: [(&str, &[u8]); 2] = [(name, &content[..length]), ("corners.bin", &corners())];
+            refused += u32::from(with_mesh(fields, &files).is_err());
+        }
+        assert!(refused > 40, "{name}: only {refused} cuts were noticed");
+    }
+}
+
+#[test]
 fn a_degenerate_triangle_among_others_is_left_out() {
     let obj = [SQUARE, b"f 1 2 2\n".as_slice()].concat();
     let scene = with_mesh(OBJ, &[("a.obj", &obj)]).unwrap();

@@ -5,7 +5,7 @@ mod obj;
 
 use glam::{DVec3, Vec3};
 
-use super::build::has_area;
+use super::fields::{MAX_COORDINATE, has_area};
 use super::source::Files;
 use super::{Geometry, Material, Scattering, Triangle, Vertex};
 
@@ -79,9 +79,12 @@ pub(super) fn add(
 ) -> Result<(), Problem> {
     let (mut added, mut dropped) = (0_usize, 0_usize);
     for part in &mesh.parts {
-        if !part.positions.iter().all(|position| position.is_finite() && position.abs().max_element() <= 1e9)
+        if !part
+            .positions
+            .iter()
+            .all(|position| position.is_finite() && f64::from(position.abs().max_element()) <= MAX_COORDINATE)
         {
-            return Err(("a coordinate is past 1e9".to_owned(), "scale the mesh down"));
+            return Err((format!("a coordinate is past {MAX_COORDINATE:e}"), "scale the mesh down"));
         }
         let material = material(part.material);
         let corners = |triangle: &[u32; 3]| triangle.map(|vertex| part.positions[vertex as usize]);
