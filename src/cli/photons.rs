@@ -7,7 +7,7 @@ use std::time::Instant;
 use anyhow::{Context as _, Result, bail};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
-use varikernel::image::{check_writable, write_atomically};
+use varikernel::image::write_atomically;
 use varikernel::photon::{self, Emission, Ends, Landings, PhotonFormat, Tally, TraceSettings};
 use varikernel::scene::Scene;
 
@@ -72,16 +72,11 @@ struct Report<'a> {
 }
 
 pub(crate) fn run(args: &Args) -> Result<Outcome> {
-    let outputs = [args.output.as_deref(), args.stats.as_deref()];
     if let Some(path) = &args.output {
         PhotonFormat::of(path)?;
     }
-    for path in outputs.into_iter().flatten() {
-        check_writable(path)?;
-    }
-    if args.output.is_some() && args.output == args.stats {
-        bail!("--stats is the same file as --output\nhelp: give each a file of its own");
-    }
+    let outputs = [("--output", args.output.as_deref()), ("--stats", args.stats.as_deref())];
+    output::check_files(("the scene", &args.scene), &outputs)?;
     let scene = load(&args.scene)?;
     let settings = TraceSettings {
         photons: args.photons,
@@ -131,6 +126,15 @@ pub(super) fn load(scene: &Path) -> varikernel::Result<Scene> {
     match scene.to_str() {
         Some(name) if !scene.exists() && Scene::shipped_names().any(|shipped| shipped == name) => {
             Scene::shipped(name)
+        }
+        _ if !scene.exists() => {
+            let names = Scene::shipped_names().collect::<Vec<_>>().join(", ");
+            Err(varikernel::Error::File {
+                path: scene.to_owned(),
+                problem: "there is no such file, nor does a scene of this name come with the program"
+                    .to_owned(),
+                remedy: format!("check the path, or use one of: {names}"),
+            })
         }
         _ => Scene::load(scene),
     }

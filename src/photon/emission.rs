@@ -10,7 +10,7 @@ use glam::{DVec3, Vec3};
 
 use super::TraceSettings;
 use super::random::{Purpose, Stream};
-use crate::scene::{LightShape, Scene, area};
+use crate::scene::{LightShape, Scene, area, cap_height};
 use crate::{Error, Result};
 
 /// By how much a photon starts before its light, as a share of the coordinates: twice what f32 loses.
@@ -122,8 +122,8 @@ impl<'a> Emission<'a> {
             LightShape::Area { triangles, .. } => {
                 leave_area(triangles, &part.cumulative, [u, v], &mut random)
             }
-            LightShape::Point { position, direction, cos_angle, .. } => {
-                let cos = 1.0 - u * (1.0 - f64::from(*cos_angle));
+            LightShape::Point { position, direction, half_angle, .. } => {
+                let cos = 1.0 - u * cap_height(*half_angle);
                 (*position, around(direction.as_dvec3(), cos, v).as_vec3())
             }
         };

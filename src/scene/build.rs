@@ -1,22 +1,16 @@
 //! From the fields of a scene file to a scene, with every check that TOML does not make.
 
 use std::collections::BTreeMap;
-use std::ops::Range;
 
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 use toml::Spanned;
 
-use super::format::{LightEntry, MaterialEntry, MeshEntry, SceneEntry, SurfaceEntry, Triple};
+use super::fields::MAX_COORDINATE;
+use super::format::{LightEntry, MaterialEntry, MeshEntry, SceneEntry, SurfaceEntry};
 use super::mesh;
 use super::source::{Files, Text};
-use super::{Camera, Geometry, Light, LightShape, Material, Scattering, Scene, Sphere, area};
+use super::{Camera, Geometry, Light, LightShape, Material, Scattering, Scene, Sphere};
 use crate::{Error, Result};
-
-/// The largest coordinate, in scene units: its square and cube fit f32 with room.
-const MAX_COORDINATE: f64 = 1e9;
-
-/// A triangle has an area if it is more than this share of its longest edge squared.
-const LEAST_SHARE: f64 = 1e-12;
 
 /// Reads the text of a scene file.
 ///
@@ -75,13 +69,6 @@ fn index(length: usize) -> u32 {
     u32::try_from(length).expect("fewer than 2^32 things fit into memory")
 }
 
-/// Whether a triangle is more than a line or a point.
-pub(super) fn has_area(corners: &[Vec3; 3]) -> bool {
-    let [a, b, c] = corners.map(Vec3::as_dvec3);
-    let longest = (b - a).length_squared().max((c - b).length_squared()).max((a - c).length_squared());
-    area(corners) > LEAST_SHARE * longest
-}
-
 /// Collects materials and geometry.
 struct Builder<'a> {
     text: &'a Text<'a>,
@@ -93,15 +80,16 @@ struct Builder<'a> {
 impl Builder<'_> {
     fn camera(&self, entry: &SceneEntry) -> Result<Camera> {
         let camera = &entry.camera;
-        let direction = self.direction(&camera.direction, "camera.direction")?;
-        let up = self.direction(&camera.up, "camera.up")?;
+        let direction = self.text.direction(&camera.direction, "camera.direction")?;
+        let up = self.text.direction(&camera.up, "camera.up")?;
         if direction.cross(up).length() < 1e-6 {
             let problem = "it is along camera.direction, so that the picture has no side";
             return Err(self.text.error(&camera.up.span(), "camera.up", problem, "choose another up"));
         }
         let field = "camera.vertical_fov_degrees";
-        let fov = self.number(&camera.vertical_fov_degrees, field, 0.01, 179.0)?;
-        let position = self.place(camera.position.span(), *camera.position.get_ref(), "camera.position")?;
+        let fov = self.text.number(&camera.vertical_fov_degrees, field, 0.01, 179.0)?;
+        let position =
+            self.text.place(camera.position.span(), *camera.position.get_ref(), "camera.position")?;
         Ok(Camera { position, direction, up, vertical_fov_degrees: fov })
     }
 
@@ -122,8 +110,8 @@ impl Builder<'_> {
                 direction: None,
                 angle_degrees: None,
             } => {
-                let emission = self.colour(radiance, &field("radiance"), f64::from(f32::MAX))?;
-                let halves = self.quad(quad, &field("quad"))?;
+                let emission = self.text.colour(radiance, &field("radiance"), f64::from(f32::MAX))?;
+                let halves = self.text.quad(quad, &field("quad"))?;
                 let (name, scattering) = (name.get_ref().clone(), Scattering::Lambert(Vec3::ZERO));
                 let (surface, material) = (index(self.geometry.surfaces.len()), index(self.materials.len()));
                 self.geometry.surfaces.push(name.clone());
@@ -136,17 +124,17 @@ impl Builder<'_> {
             LightEntry {
                 quad: None, radiance: None, point: Some(point), intensity: Some(intensity), ..
             } => {
-                let position = self.place(point.span(), *point.get_ref(), &field("point"))?;
-                let intensity = self.colour(intensity, &field("intensity"), f64::from(f32::MAX))?;
-                let (direction, cos_angle) = match (&entry.direction, &entry.angle_degrees) {
-                    (None, None) => (Vec3::Y, -1.0),
+                let position = self.text.place(point.span(), *point.get_ref(), &field("point"))?;
+                let intensity = self.text.colour(intensity, &field("intensity"), f64::from(f32::MAX))?;
+                let (direction, half_angle) = match (&entry.direction, &entry.angle_degrees) {
+                    (None, None) => (Vec3::Y, std::f32::consts::PI),
                     (Some(direction), Some(angle)) => {
-                        let angle = self.number(angle, &field("angle_degrees"), 0.01, 180.0)?;
-                        (self.direction(direction, &field("direction"))?, angle.to_radians().cos())
+                        let angle = self.text.number(angle, &field("angle_degrees"), 0.01, 180.0)?;
+                        (self.text.direction(direction, &field("direction"))?, angle.to_radians())
                     }
                     _ => return wrong("a spot has both direction and angle_degrees"),
                 };
-                LightShape::Point { position, direction, cos_angle, intensity }
+                LightShape::Point { position, direction, half_angle, intensity }
             }
             _ => return wrong("these fields together make no light"),
         };
@@ -156,18 +144,18 @@ impl Builder<'_> {
     fn material(&self, name: &Spanned<String>, entry: &MaterialEntry) -> Result<Material> {
         let field = |field: &str| format!("materials.{}.{field}", name.get_ref());
         let emission = match &entry.emission {
-            Some(emission) => self.colour(emission, &field("emission"), f64::from(f32::MAX))?,
+            Some(emission) => self.text.colour(emission, &field("emission"), f64::from(f32::MAX))?,
             None => Vec3::ZERO,
         };
         let scattering = match (&entry.lambert, &entry.mirror, &entry.dielectric) {
             (Some(reflectance), None, None) => {
-                Scattering::Lambert(self.colour(reflectance, &field("lambert"), 1.0)?)
+                Scattering::Lambert(self.text.colour(reflectance, &field("lambert"), 1.0)?)
             }
             (None, Some(reflectance), None) => {
-                Scattering::Mirror(self.colour(reflectance, &field("mirror"), 1.0)?)
+                Scattering::Mirror(self.text.colour(reflectance, &field("mirror"), 1.0)?)
             }
             (None, None, Some(index)) => {
-                Scattering::Dielectric { index: self.number(index, &field("dielectric"), 0.1, 10.0)? }
+                Scattering::Dielectric { index: self.text.number(index, &field("dielectric"), 0.1, 10.0)? }
             }
             _ => {
                 let (field, problem) =
@@ -203,16 +191,20 @@ impl Builder<'_> {
         };
         for (number, quad) in entry.quads.iter().enumerate() {
             let material = material.ok_or_else(needed)?;
-            for half in self.quad(quad, &format!("{}[{number}]", field("quads")))? {
+            for half in self.text.quad(quad, &format!("{}[{number}]", field("quads")))? {
                 self.geometry.push_flat(half, surface, material);
             }
         }
         for (number, sphere) in entry.spheres.iter().enumerate() {
             let material = material.ok_or_else(needed)?;
             let field = format!("{}[{number}]", field("spheres"));
-            let centre =
-                self.place(sphere.centre.span(), *sphere.centre.get_ref(), &format!("{field}.centre"))?;
-            let radius = self.number(&sphere.radius, &format!("{field}.radius"), 1e-9, MAX_COORDINATE)?;
+            let centre = self.text.place(
+                sphere.centre.span(),
+                *sphere.centre.get_ref(),
+                &format!("{field}.centre"),
+            )?;
+            let radius =
+                self.text.number(&sphere.radius, &format!("{field}.radius"), 1e-9, MAX_COORDINATE)?;
             if self.materials[material as usize].emission != Vec3::ZERO {
                 let remedy = "give the sphere another material, or make the light of quads or a mesh";
                 return Err(self.text.error(&sphere.radius.span(), &field, "a sphere can't shine", remedy));
@@ -241,10 +233,11 @@ impl Builder<'_> {
             return Err(refuse((problem, "give the surface a material")));
         }
         let scale = entry.scale.as_ref();
-        let scale = scale
-            .map_or(Ok(1.0), |scale| self.number(scale, &format!("{field}.scale"), 1e-9, MAX_COORDINATE))?;
+        let scale = scale.map_or(Ok(1.0), |scale| {
+            self.text.number(scale, &format!("{field}.scale"), 1e-9, MAX_COORDINATE)
+        })?;
         let translate = match &entry.translate {
-            Some(by) => self.place(by.span(), *by.get_ref(), &format!("{field}.translate"))?,
+            Some(by) => self.text.place(by.span(), *by.get_ref(), &format!("{field}.translate"))?,
             None => Vec3::ZERO,
         };
         for part in &mut mesh.parts {
@@ -276,66 +269,4 @@ impl Builder<'_> {
             self.text.error(&name.span(), field, problem, remedy)
         })
     }
-
-    /// The two halves of a quad: corners 0, 1, 2 and 0, 2, 3.
-    fn quad(&self, quad: &Spanned<[Triple; 4]>, field: &str) -> Result<[[Vec3; 3]; 2]> {
-        let mut corners = [Vec3::ZERO; 4];
-        for (corner, &numbers) in corners.iter_mut().zip(quad.get_ref()) {
-            *corner = self.place(quad.span(), numbers, field)?;
-        }
-        let [a, b, c, d] = corners;
-        let halves = [[a, b, c], [a, c, d]];
-        let remedy = "give four corners in a row around the quad";
-        if !halves.iter().all(has_area) {
-            return Err(self.text.error(&quad.span(), field, "the quad, or half of it, has no area", remedy));
-        }
-        let normal = |[a, b, c]: [Vec3; 3]| (b - a).as_dvec3().cross((c - a).as_dvec3());
-        if normal(halves[0]).dot(normal(halves[1])) <= 0.0 {
-            return Err(self.text.error(&quad.span(), field, "the quad is folded or dented", remedy));
-        }
-        Ok(halves)
-    }
-
-    fn place(&self, span: Range<usize>, numbers: Triple, field: &str) -> Result<Vec3> {
-        if !numbers.iter().all(|number| number.abs() <= MAX_COORDINATE) {
-            let problem = format!("{numbers:?} is not a place");
-            let remedy = format!("coordinates go from -{MAX_COORDINATE:e} to {MAX_COORDINATE:e}");
-            return Err(self.text.error(&span, field, problem, remedy));
-        }
-        Ok(single(numbers))
-    }
-
-    /// Of length 1.
-    fn direction(&self, numbers: &Spanned<Triple>, field: &str) -> Result<Vec3> {
-        let direction = self.place(numbers.span(), *numbers.get_ref(), field)?.as_dvec3();
-        let unit = direction.try_normalize().ok_or_else(|| {
-            self.text.error(&numbers.span(), field, "it has no length", "give a direction, such as [0, 0, 1]")
-        })?;
-        Ok(unit.as_vec3())
-    }
-
-    /// Linear RGB from 0 to `most`.
-    fn colour(&self, numbers: &Spanned<Triple>, field: &str, most: f64) -> Result<Vec3> {
-        if !numbers.get_ref().iter().all(|number| (0.0..=most).contains(number)) {
-            let problem = format!("{:?} is not possible", numbers.get_ref());
-            let remedy = format!("give red, green and blue from 0 to {most:e}");
-            return Err(self.text.error(&numbers.span(), field, problem, remedy));
-        }
-        Ok(single(*numbers.get_ref()))
-    }
-
-    fn number(&self, number: &Spanned<f64>, field: &str, least: f64, most: f64) -> Result<f32> {
-        let value = *number.get_ref();
-        if !(least..=most).contains(&value) {
-            let remedy = format!("it goes from {least} to {most}");
-            return Err(self.text.error(&number.span(), field, format!("{value} is not possible"), remedy));
-        }
-        #[expect(clippy::cast_possible_truncation, reason = "rounded to the precision of the scene")]
-        let single = value as f32;
-        Ok(single)
-    }
-}
-
-fn single(numbers: Triple) -> Vec3 {
-    DVec3::from_array(numbers).as_vec3()
 }

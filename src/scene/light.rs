@@ -29,8 +29,8 @@ pub enum LightShape {
         position: Vec3,
         /// The cone's axis, of length 1.
         direction: Vec3,
-        /// Cosine of the angle between the cone's axis and its edge, from -1 (all around) to less than 1.
-        cos_angle: f32,
+        /// Between the cone's axis and its edge, in radians, more than 0 and up to π (all around).
+        half_angle: f32,
         /// Power per solid angle, linear RGB.
         intensity: Vec3,
     },
@@ -44,11 +44,16 @@ impl Light {
             LightShape::Area { triangles, radiance } => {
                 PI * triangles.iter().map(area).sum::<f64>() * radiance.as_dvec3()
             }
-            LightShape::Point { cos_angle, intensity, .. } => {
-                TAU * (1.0 - f64::from(*cos_angle)) * intensity.as_dvec3()
+            LightShape::Point { half_angle, intensity, .. } => {
+                TAU * cap_height(*half_angle) * intensity.as_dvec3()
             }
         }
     }
+}
+
+/// 1 - cos of an angle in radians, without loss for small ones.
+pub(crate) fn cap_height(half_angle: f32) -> f64 {
+    2.0 * (f64::from(half_angle) / 2.0).sin().powi(2)
 }
 
 /// Area of a triangle, in square scene units.

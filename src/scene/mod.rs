@@ -6,6 +6,7 @@
 mod build;
 mod camera;
 mod cast;
+mod fields;
 mod format;
 mod geometry;
 mod intersect;
@@ -19,6 +20,7 @@ pub use camera::Camera;
 pub use cast::Hit;
 pub use geometry::{Geometry, Sphere, Triangle, Vertex};
 pub use intersect::{Ray, TriangleEdges, intersect_sphere};
+pub(crate) use light::cap_height;
 pub use light::{Light, LightShape, area};
 pub use material::{Material, Scattering};
 

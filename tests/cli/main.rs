@@ -8,6 +8,7 @@ mod devices;
 mod exact;
 mod files;
 mod outputs;
+mod photons;
 mod synth;
 
 use std::collections::BTreeMap;

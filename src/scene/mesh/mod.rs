@@ -5,7 +5,7 @@ mod obj;
 
 use glam::{DVec3, Vec3};
 
-use super::build::has_area;
+use super::fields::{MAX_COORDINATE, has_area};
 use super::source::Files;
 use super::{Geometry, Material, Scattering, Triangle, Vertex};
 
@@ -79,9 +79,12 @@ pub(super) fn add(
 ) -> Result<(), Problem> {
     let (mut added, mut dropped) = (0_usize, 0_usize);
     for part in &mesh.parts {
-        if !part.positions.iter().all(|position| position.is_finite() && position.abs().max_element() <= 1e9)
+        if !part
+            .positions
+            .iter()
+            .all(|position| position.is_finite() && f64::from(position.abs().max_element()) <= MAX_COORDINATE)
         {
-            return Err(("a coordinate is past 1e9".to_owned(), "scale the mesh down"));
+            return Err((format!("a coordinate is past {MAX_COORDINATE:e}"), "scale the mesh down"));
         }
         let material = material(part.material);
         let corners = |triangle: &[u32; 3]| triangle.map(|vertex| part.positions[vertex as usize]);
@@ -118,14 +121,17 @@ pub(super) fn add(
     Ok(())
 }
 
-/// The file's normals, or else the means of the faces around each vertex, by area.
+/// The file's normals, or else the means of the faces around each vertex, by the angle that each has there, so that it does
+/// not matter how a face is cut into triangles.
 fn smooth_normals(part: &Part, triangles: &[&[u32; 3]]) -> Vec<Vec3> {
     let mut sums = vec![DVec3::ZERO; part.positions.len()];
     if part.normals.is_empty() {
         for triangle in triangles {
-            let [a, b, c] = triangle.map(|vertex| part.positions[vertex as usize].as_dvec3());
-            for &vertex in *triangle {
-                sums[vertex as usize] += (b - a).cross(c - a);
+            let corners = triangle.map(|vertex| part.positions[vertex as usize].as_dvec3());
+            for (number, &vertex) in triangle.iter().enumerate() {
+                let to = |step: usize| corners[(number + step) % 3] - corners[number];
+                let (next, previous) = (to(1), to(2));
+                sums[vertex as usize] += next.cross(previous).normalize() * next.angle_between(previous);
             }
         }
     } else {
