@@ -10,7 +10,7 @@ mod surfaces;
 #[cfg(feature = "render")]
 pub use irradiance::IrradianceMap;
 #[cfg(feature = "render")]
-pub use photons::{ChosenRadius, PhotonPoint, PhotonPoints};
+pub use photons::{ChosenRadius, PhotonPoints};
 #[cfg(feature = "render")]
 pub use surfaces::SurfaceMaps;
 

@@ -4,6 +4,8 @@ mod emission;
 mod files;
 mod landings;
 mod path;
+#[cfg(feature = "render")]
+mod point;
 mod random;
 mod records;
 mod scatter;
@@ -12,6 +14,8 @@ mod tracer;
 pub use emission::{Emission, EmittedPhoton};
 pub use files::{PhotonFormat, write};
 pub use landings::{Ends, Landings, Tally};
+#[cfg(feature = "render")]
+pub use point::PhotonPoint;
 pub use scatter::{reflect, refract};
 pub use tracer::{trace, trace_from, trace_from_hits, trace_in_batches};
 

@@ -46,12 +46,12 @@ pub(super) fn irradiance(
     let mut total = DVec3::ZERO;
     for light in scene.lights() {
         match &light.shape {
-            LightShape::Point { position: at, direction, cos_angle, intensity } => {
+            LightShape::Point { position: at, direction, half_angle, intensity } => {
                 let away = at.as_dvec3() - position;
                 let squared = away.length_squared();
                 let to_light = away / squared.sqrt();
                 let cos = normal.dot(to_light);
-                let in_cone = (-to_light).dot(direction.as_dvec3()) >= f64::from(*cos_angle);
+                let in_cone = (-to_light).angle_between(direction.as_dvec3()) <= f64::from(*half_angle);
                 if cos > 0.0 && in_cone && visible(at.as_dvec3()) {
                     total += intensity.as_dvec3() * cos / squared;
                 }

@@ -20,8 +20,8 @@ use crate::error::Result;
 use crate::gbuffer::{self, SurfaceStage};
 use crate::gl::{Gl, ShaderSource, TextureFormat};
 use crate::image::Image;
-use crate::maps::{ChosenRadius, DensityMap, PhotonPoint, PhotonPoints, SurfaceMaps};
-use crate::photon::{Emission, Photon, TraceSettings, trace_in_batches};
+use crate::maps::{ChosenRadius, DensityMap, PhotonPoints, SurfaceMaps};
+use crate::photon::{Emission, Photon, PhotonPoint, TraceSettings, trace_in_batches};
 use crate::pipeline::RadiusPipeline;
 use crate::scene::Scene;
 use crate::settings::{Estimate, Kernel, PictureSettings, RadiusChoice, Search, Settings};
@@ -53,6 +53,8 @@ pub struct Layers {
     pub direct: Image<[f32; 3]>,
     /// Everything else: what photons brought.
     pub indirect: Image<[f32; 3]>,
+    /// Indirect irradiance on diffuse surfaces, before their albedo: power per area.
+    pub irradiance: Image<[f32; 3]>,
     /// Photons that contribute to each pixel.
     pub density: Image<f32>,
     /// R, in pixels.
@@ -112,6 +114,30 @@ pub struct Renderer {
     traced: Traced,
 }
 
+/// All that needs no photons.
+#[derive(Debug)]
+struct Light {
+    surfaces: SurfaceMaps,
+    light: TracedLight,
+    bent: Vec<Place>,
+}
+
+impl Light {
+    fn new(
+        gl: &Gl,
+        scene: &Scene,
+        settings: &PictureSettings,
+        progress: &mut dyn FnMut(Progress) -> Result<()>,
+    ) -> Result<Self> {
+        let view = View::new(scene, settings.size);
+        let surfaces = SurfaceStage::new(gl)?.draw(scene, view)?;
+        progress(Progress { stage: "direct light", done: 0.0 })?;
+        let sight = Sight::new(scene, &view);
+        let light = direct_light(scene, &view, &sight, settings, progress)?;
+        Ok(Self { surfaces, light, bent: sight.bent })
+    }
+}
+
 /// Photons, where they are needed.
 #[derive(Debug)]
 struct Traced {
@@ -138,17 +164,45 @@ impl Renderer {
         progress: &mut dyn FnMut(Progress) -> Result<()>,
     ) -> Result<Self> {
         settings.validate()?;
+        // What can be refused is refused before anything is traced.
         Emission::new(scene, trace)?;
-        let view = View::new(scene, settings.size);
-        let surfaces = SurfaceStage::new(gl)?.draw(scene, view)?;
-        progress(Progress { stage: "direct light", done: 0.0 })?;
-        let sight = Sight::new(scene, &view);
-        let light = direct_light(scene, &view, &sight, settings, progress)?;
+        let light = Light::new(gl, scene, settings, progress)?;
+        let traced = Traced::new(gl, scene, light.surfaces.view(), trace, !light.bent.is_empty(), progress)?;
+        Self::assemble(gl, light, traced)
+    }
 
-        let mut density = DensityStage::new(gl, settings.size)?;
-        let traced = Traced::new(gl, scene, &view, trace, !sight.bent.is_empty(), progress)?;
+    /// The same with photons that the caller traced, without those of direct light.
+    ///
+    /// # Errors
+    /// As [`Renderer::new`].
+    pub fn with_photons(
+        gl: &Gl,
+        scene: &Scene,
+        settings: &PictureSettings,
+        photons: &[PhotonPoint],
+    ) -> Result<Self> {
+        settings.validate()?;
+        let light = Light::new(gl, scene, settings, &mut |_| Ok(()))?;
+        let mut points = PhotonPoints::new(gl);
+        let view = light.surfaces.view();
+        let seen: Vec<_> = photons.iter().copied().filter(|photon| photon.may_be_seen(view)).collect();
+        points.upload(&seen)?;
+        let grid = (!light.bent.is_empty()).then(|| PhotonGrid::new(photons, scene.bounds()));
+        let count = u32::try_from(photons.len()).expect("fewer than 2^32 photons");
+        Self::assemble(gl, light, Traced { emitted: count, landings: count.into(), points, grid })
+    }
+
+    fn assemble(gl: &Gl, light: Light, traced: Traced) -> Result<Self> {
+        let Light { surfaces, light, bent } = light;
+        let mut density = DensityStage::new(gl, surfaces.size())?;
         density.add(&surfaces, &traced.points)?;
-        Ok(Self { gl: gl.clone(), size: settings.size, surfaces, density, light, bent: sight.bent, traced })
+        Ok(Self { gl: gl.clone(), size: surfaces.size(), surfaces, density, light, bent, traced })
+    }
+
+    /// What each pixel shows.
+    #[must_use]
+    pub fn surfaces(&self) -> &SurfaceMaps {
+        &self.surfaces
     }
 
     /// The picture with the radius, kernel and estimate of `settings`; its size and shadow rays are those of before.
@@ -196,6 +250,7 @@ impl Renderer {
             beauty: shaded.beauty.map(rgb),
             direct: self.light.direct.map(rgb),
             indirect: shaded.indirect.map(rgb),
+            irradiance: irradiance.map(rgb),
             density: self.density.read_counts()?,
             radius,
             limited,

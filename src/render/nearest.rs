@@ -4,7 +4,7 @@
 use glam::{DVec3, IVec3, Vec3};
 
 use super::sight::Place;
-use crate::maps::PhotonPoint;
+use crate::photon::PhotonPoint;
 use crate::settings::Kernel;
 
 /// Cells along the longest side.

@@ -3,10 +3,10 @@
 
 use glam::DVec3;
 
-use super::{Layers, Progress, Traced, Wanted, add, direct_light, pixel_area, rgb, seen_through};
+use super::sight::Place;
+use super::{Layers, Light, Progress, Traced, Wanted, add, pixel_area, rgb, seen_through};
 use crate::density::DensityStage;
 use crate::error::Result;
-use crate::gbuffer::SurfaceStage;
 use crate::gl::Gl;
 use crate::image::Image;
 use crate::maps::SurfaceMaps;
@@ -14,9 +14,6 @@ use crate::photon::TraceSettings;
 use crate::scene::Scene;
 use crate::settings::{Kernel, PictureSettings};
 use crate::shade::TracedLight;
-use crate::view::View;
-
-use super::sight::{Place, Sight};
 
 /// The sums over the seeds so far.
 #[derive(Debug)]
@@ -44,16 +41,13 @@ impl Reference {
         progress: &mut dyn FnMut(Progress) -> Result<()>,
     ) -> Result<Self> {
         settings.validate()?;
-        let view = View::new(scene, settings.size);
-        let surfaces = SurfaceStage::new(gl)?.draw(scene, view)?;
-        let sight = Sight::new(scene, &view);
-        let light = direct_light(scene, &view, &sight, settings, progress)?;
+        let Light { surfaces, light, bent } = Light::new(gl, scene, settings, progress)?;
         Ok(Self {
             gl: gl.clone(),
             surfaces,
             density: DensityStage::new(gl, settings.size)?,
             light,
-            bent: sight.bent,
+            bent,
             seeds: 0,
             power: Image::filled(settings.size, [0.0; 4]),
             seen_through: Image::filled(settings.size, [0.0; 4]),
@@ -97,7 +91,7 @@ impl Reference {
         let albedo = self.surfaces.read_albedo()?.map(rgb);
         let size = albedo.size();
         let view = self.surfaces.view();
-        let mut indirect = Image::filled(size, [0.0; 4]);
+        let (mut indirect, mut irradiance) = (Image::filled(size, [0.0; 4]), Image::filled(size, [0.0; 4]));
         for pixel in 0..size.element_product() {
             let (x, y) = (pixel % size.x, pixel / size.x);
             let [red, green, blue, _] = self.seen_through.at(x, y);
@@ -106,9 +100,9 @@ impl Reference {
                 let [red, green, blue, _] = self.power.at(x, y);
                 let area = pixel_area(view, position.at(x, y), normal.at(x, y));
                 let reflectance = glam::Vec3::from(albedo.at(x, y)).as_dvec3();
-                let radiance =
-                    reflectance * DVec3::new(red, green, blue) * (share / area / std::f64::consts::PI);
-                add(&mut indirect, pixel, radiance);
+                let arrives = DVec3::new(red, green, blue) * (share / area);
+                add(&mut irradiance, pixel, arrives);
+                add(&mut indirect, pixel, reflectance * arrives / std::f64::consts::PI);
             }
         }
         let mut beauty = indirect.clone();
@@ -122,6 +116,7 @@ impl Reference {
             beauty: beauty.map(rgb),
             direct: self.light.direct.map(rgb),
             indirect: indirect.map(rgb),
+            irradiance: irradiance.map(rgb),
             density,
             radius: Image::filled(size, 0),
             limited: Image::filled(size, 0),

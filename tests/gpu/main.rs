@@ -3,12 +3,22 @@
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 mod approximate;
+#[cfg(feature = "render")]
+mod density;
 mod exactness;
 mod faults;
 mod host;
 mod objects;
+#[cfg(feature = "render")]
+mod picture;
 mod radius;
 mod shaders;
+#[cfg(feature = "render")]
+mod splat;
+#[cfg(feature = "render")]
+mod stage;
 mod state;
 mod support;
+#[cfg(feature = "render")]
+mod surfaces;
 mod variations;
