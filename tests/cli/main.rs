@@ -9,6 +9,7 @@ mod exact;
 mod files;
 mod outputs;
 mod photons;
+mod render;
 mod synth;
 
 use std::collections::BTreeMap;
