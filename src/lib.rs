@@ -44,7 +44,9 @@
 //! |---|---|
 //! | `cli`, `main` | the program, built on the public library: one file a verb |
 //! | [`measure`] | how right and how fast a result is: differences, timing runs (`bench`), the thesis's tables and claims (`thesis`), both together (`reproduce`), a page of them (`report`) |
-//! | [`pipeline`] | the stages in order; what a host calls |
+//! | `render` | scene in, picture out: the stages of a picture in order, soft shadows, what is seen in mirrors and through glass |
+//! | `gbuffer`, `density`, `splat`, `shade` | a stage of a picture each: what pixels show, photons counted, kernels drawn, light added up |
+//! | [`pipeline`] | the stages of a radius map in order; what a host calls |
 //! | `radius` | density map and structure in, radius map out |
 //! | [`structure`] | brute force, mipmaps, pyramid, summed-area table: a section of the thesis each |
 //! | `driver_limits` | what software renderers would silently get wrong |
@@ -52,6 +54,7 @@
 //! | [`exactness`] | which sums fit which storage, decided before computing |
 //! | [`reference`](mod@reference) | the definition: the same in plain Rust, without OpenGL |
 //! | `photon` | scene in, photons out: traced on the CPU, landing after landing, with statistics |
+//! | `view` | a camera and its pixels: where a place is seen, along which ray a pixel looks |
 //! | `scene` | scene files: camera, lights, materials, triangles and spheres; ray casting |
 //! | `synth` | seeded test maps |
 //! | `context` | headless contexts: EGL devices and OSMesa |
@@ -61,9 +64,10 @@
 //! # The host's OpenGL state
 //! Each public call puts back what it touches, also when it fails:
 //!
-//! - the current program, vertex array, draw and read framebuffer, and the viewport;
+//! - the current program, vertex array and array buffer, draw and read framebuffer, and the viewport;
 //! - the active texture unit, and the 2D texture and the sampler of units 0 to 3;
-//! - blending and the colour mask of draw buffers 0 and 1;
+//! - blending and the colour mask of draw buffers 0 to 7, the blend functions and equations;
+//! - the depth test with its function and mask, depth clamping, polygon offset, and the size of points from programs;
 //! - face culling, scissor test, logic operation, rasteriser discard, primitive restart, clip distances 0 to 7, polygon mode;
 //! - the pixel pack and unpack buffers, and alignment, row length, skips and byte swapping of both.
 //!

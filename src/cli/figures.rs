@@ -1,11 +1,11 @@
 //! `varikernel figures`: the thesis's Figures 1.2 to 1.4 and ours, on one sheet with their errors.
 
 use std::fs;
+use std::io::Write;
 use std::path::PathBuf;
 
 use anyhow::{Context as _, Result, bail};
 use serde::Serialize;
-use varikernel::Image;
 use varikernel::context;
 use varikernel::image::{
     Picture, Tile, check_writable, contact_sheet, picture_of, write_atomically, write_colours,
@@ -13,7 +13,9 @@ use varikernel::image::{
 use varikernel::measure::PictureError;
 use varikernel::photon::TraceSettings;
 use varikernel::render::{Layers, Progress, Reference, Renderer};
-use varikernel::settings::{PictureSettings, RadiusChoice};
+use varikernel::scene::Scene;
+use varikernel::settings::{MAX_PICTURE_RADIUS, PictureSettings, RadiusChoice};
+use varikernel::{Gl, Image};
 
 use super::photons::load;
 use super::render::{Bar, Source, in_words_of_options};
@@ -89,84 +91,44 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     let scene = load(&source.scene)?;
     let gl = context::open(&source.device)?;
 
-    // Two halves of seeds that no picture uses.
     let bar = Bar::new();
-    let mut halves = Vec::new();
-    for half in 0..2 {
-        let mut reference = Reference::new(&gl, &scene, &settings, &mut |_| Ok(()))?;
-        for seed in (half..args.reference_seeds).step_by(2) {
-            let trace = TraceSettings { seed: trace.seed.wrapping_add(1 + u64::from(seed)), ..trace };
-            reference.add_seed(&scene, &trace, &mut |_| Ok(())).map_err(in_words_of_options)?;
-            let done = f64::from(half * args.reference_seeds + seed) / f64::from(2 * args.reference_seeds);
-            bar.show(Progress { stage: "reference", done })?;
-        }
-        halves.push(reference.picture()?);
-    }
-    let reference = mean(&halves[0].indirect, &halves[1].indirect);
+    let halves = references(args, &gl, &scene, &bar).map_err(in_words_of_options)?;
+    let indirect = mean(&halves[0].indirect, &halves[1].indirect);
     let apart = PictureError::between(&halves[0].indirect, &halves[1].indirect);
     let reference_noise = PictureError { rmse: apart.rmse / 2.0, relative_mse: apart.relative_mse / 4.0 };
 
-    let mut renderer = Renderer::new(&gl, &scene, &settings, &trace, &mut |progress| bar.show(progress))
+    let renderer = Renderer::new(&gl, &scene, &settings, &trace, &mut |progress| bar.show(progress))
         .map_err(in_words_of_options)?;
-    let mut draw = |radius: RadiusChoice| -> Result<(Layers, Figure)> {
-        let (layers, account) = renderer.picture(&PictureSettings { radius, ..settings })?;
-        let error = PictureError::between(&layers.indirect, &reference);
-        Ok((layers, Figure { name: "", radius, error, energy_error: account.energy_error() }))
-    };
-    let mut fixed = Vec::new();
-    for (index, radius) in (0_u32..).zip(RADII) {
-        bar.show(Progress { stage: "fixed radii", done: f64::from(index) / 12.0 })?;
-        let error = draw(RadiusChoice::Fixed(radius))?.1.error;
-        let is_past = fixed.last().is_some_and(|(_, before): &(u32, PictureError)| {
-            error.rmse > before.rmse && error.relative_mse > before.relative_mse
-        });
-        fixed.push((radius, error));
-        // Wide kernels take long, and the error only grows from there on.
-        if is_past {
-            break;
-        }
-    }
-    let best =
-        fixed.iter().min_by(|(_, a), (_, b)| a.rmse.total_cmp(&b.rmse)).map_or(1, |(radius, _)| *radius);
-    let large = (best * TOO_LARGE).min(varikernel::settings::MAX_PICTURE_RADIUS);
-    let shown = [
-        ("Figure 1.2, well chosen", RadiusChoice::Fixed(best)),
-        ("Figure 1.3, too large", RadiusChoice::Fixed(large)),
-        ("Figure 1.4, too small", RadiusChoice::Fixed(1)),
-        ("Variable", RadiusChoice::Variable),
-    ];
+    let mut studio = Studio { renderer, settings, reference: indirect };
+    let fixed = studio.fixed_radii(&bar)?;
+    let best = fixed
+        .iter()
+        .min_by(|(_, a), (_, b)| a.rmse.total_cmp(&b.rmse))
+        .map_or_else(|| unreachable!("at least one radius was tried"), |(radius, _)| *radius);
+    let too_large = (best * TOO_LARGE).min(MAX_PICTURE_RADIUS);
     let (mut figures, mut tiles) = (Vec::new(), Vec::new());
-    for (name, radius) in shown {
-        let (layers, figure) = draw(radius)?;
-        let figure = Figure { name, ..figure };
-        let width = match radius {
-            RadiusChoice::Fixed(radius) => format!("fixed radius {radius}"),
-            RadiusChoice::Variable => format!("n = {}", settings.min_photons),
-        };
+    for (name, file, radius) in [
+        ("Figure 1.2, well chosen", "figure_1_2.png", RadiusChoice::Fixed(best)),
+        ("Figure 1.3, too large", "figure_1_3.png", RadiusChoice::Fixed(too_large)),
+        ("Figure 1.4, too small", "figure_1_4.png", RadiusChoice::Fixed(1)),
+        ("Variable", "variable.png", RadiusChoice::Variable),
+    ] {
+        let (layers, figure) = studio.draw(name, radius)?;
         let picture = tone_map.apply(&layers.beauty);
-        let file = match name {
-            "Variable" => "variable.png".to_owned(),
-            _ => format!("figure_{}.png", &name[7..10].replace('.', "_")),
-        };
         write_colours(&args.output.join(file), &picture)?;
-        let PictureError { rmse, relative_mse } = figure.error;
-        let caption = vec![format!("{name}: {width}"), format!("RMSE {rmse:.4}  relMSE {relative_mse:.4}")];
-        tiles.push(Tile { picture, caption });
+        tiles.push(Tile { picture, caption: caption(&figure, settings.min_photons) });
         if radius == RadiusChoice::Variable {
-            let title = Picture { title: "", unit: "", range: Some(1..=settings.max_radius) };
+            let colours = Picture { range: Some(1..=settings.max_radius), ..Picture::default() };
             let caption = vec![
                 "Its radius map".to_owned(),
-                format!("1 to {} pixels, dark to red", settings.max_radius),
+                format!("1 (dark) to {} pixels (red)", settings.max_radius),
             ];
-            tiles.push(Tile { picture: picture_of(&layers.radius, &title), caption });
+            tiles.push(Tile { picture: picture_of(&layers.radius, &colours), caption });
         }
         figures.push(figure);
     }
     bar.finish();
-    let caption = vec![
-        format!("Reference, {} seeds", args.reference_seeds),
-        format!("RMSE {:.4}  relMSE {:.4}", reference_noise.rmse, reference_noise.relative_mse),
-    ];
+    let caption = vec![format!("Reference, {} seeds", args.reference_seeds), errors(reference_noise)];
     tiles.push(Tile { picture: tone_map.apply(&mean(&halves[0].beauty, &halves[1].beauty)), caption });
     write_colours(&args.output.join("figures.png"), &contact_sheet(&tiles, 3))?;
     let report = Report {
@@ -181,15 +143,79 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
         fixed,
     };
     let text = serde_json::to_string_pretty(&report)?;
-    write_atomically(&args.output.join("figures.json"), |file| {
-        std::io::Write::write_all(file, text.as_bytes())
-    })?;
+    write_atomically(&args.output.join("figures.json"), |file| Write::write_all(file, text.as_bytes()))?;
     if args.json {
         output::print_json(&report)?;
     } else {
         print(&report, args)?;
     }
     Ok(Outcome::Done)
+}
+
+/// Two halves of seeds that no picture uses.
+fn references(args: &Args, gl: &Gl, scene: &Scene, bar: &Bar) -> varikernel::Result<[Layers; 2]> {
+    let (settings, trace) = (args.source.picture(), args.source.trace());
+    let mut done = 0;
+    let mut half = |first: u32| {
+        let mut reference = Reference::new(gl, scene, &settings, &mut |_| ())?;
+        for seed in (first..args.reference_seeds).step_by(2) {
+            let trace = TraceSettings { seed: trace.seed.wrapping_add(1 + u64::from(seed)), ..trace };
+            reference.add_seed(scene, &trace, &mut |_| ())?;
+            done += 1;
+            bar.show(Progress {
+                stage: "reference",
+                done: f64::from(done) / f64::from(args.reference_seeds),
+            });
+        }
+        reference.picture()
+    };
+    Ok([half(0)?, half(1)?])
+}
+
+/// One set of photons, drawn with many radii.
+struct Studio {
+    renderer: Renderer,
+    settings: PictureSettings,
+    /// Indirect light.
+    reference: Image<[f32; 3]>,
+}
+
+impl Studio {
+    fn draw(&mut self, name: &'static str, radius: RadiusChoice) -> Result<(Layers, Figure)> {
+        let (layers, account) = self.renderer.picture(&PictureSettings { radius, ..self.settings })?;
+        let error = PictureError::between(&layers.indirect, &self.reference);
+        Ok((layers, Figure { name, radius, error, energy_error: account.energy_error() }))
+    }
+
+    /// The errors of fixed radii, as far as it makes sense.
+    fn fixed_radii(&mut self, bar: &Bar) -> Result<Vec<(u32, PictureError)>> {
+        let mut fixed: Vec<(u32, PictureError)> = Vec::new();
+        for radius in RADII {
+            bar.show(Progress { stage: "fixed radii", done: f64::from(radius) / 32.0 });
+            let error = self.draw("", RadiusChoice::Fixed(radius))?.1.error;
+            let is_past = fixed.last().is_some_and(|(_, before)| {
+                error.rmse > before.rmse && error.relative_mse > before.relative_mse
+            });
+            fixed.push((radius, error));
+            // Wide kernels take long, and the error only grows from there on.
+            if is_past {
+                break;
+            }
+        }
+        Ok(fixed)
+    }
+}
+
+fn caption(figure: &Figure, min_photons: u32) -> Vec<String> {
+    let width = match figure.radius {
+        RadiusChoice::Fixed(radius) => format!("radius {radius}"),
+        RadiusChoice::Variable => format!("n = {min_photons}"),
+    };
+    vec![format!("{}: {width}", figure.name), errors(figure.error)]
+}
+
+fn errors(PictureError { rmse, relative_mse }: PictureError) -> String {
+    format!("RMSE {rmse:.5} relMSE {relative_mse:.4}")
 }
 
 /// The mean of two pictures.

@@ -48,7 +48,7 @@ enum Verb {
     Render(render::Args),
     Figures(figures::Args),
     Radius(radius::Args),
-    Bench(bench::Args),
+    Bench(Box<bench::Args>),
     Reproduce(reproduce::Args),
     Compare(compare::Args),
     Photons(photons::Args),

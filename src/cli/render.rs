@@ -82,7 +82,7 @@ pub(super) struct Source {
     pub(super) seed: u64,
 
     /// n: photons that a kernel has to hold, at least 1.
-    #[arg(short = 'n', long, default_value_t = 50, value_name = "N", allow_negative_numbers = true)]
+    #[arg(short = 'n', long, default_value_t = 400, value_name = "N", allow_negative_numbers = true)]
     pub(super) min_photons: u32,
 
     /// MR: the largest radius, in pixels, 1 to 96.
@@ -171,10 +171,10 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     let bar = Bar::new();
     let mut renderer = Renderer::new(&gl, &scene, &settings, &trace, &mut |progress| bar.show(progress))
         .map_err(in_words_of_options)?;
-    bar.show(Progress { stage: "picture", done: 0.0 })?;
+    bar.show(Progress { stage: "picture", done: 0.0 });
     let (layers, account) = renderer.picture(&settings)?;
     bar.finish();
-    write(&args.output, &layers, &tone_map, &attributes(args, &scene.title))?;
+    write(&args.output, &layers, tone_map, &attributes(args, &scene.title))?;
     let report = Report {
         version: env!("CARGO_PKG_VERSION"),
         scene: &scene.title,
@@ -215,11 +215,11 @@ fn render_reference(
         let trace = TraceSettings { seed: trace.seed.wrapping_add(u64::from(seed)), ..trace };
         let mut show = |Progress { done, .. }: Progress| {
             let done = (f64::from(seed) + done) / f64::from(seeds);
-            bar.show(Progress { stage: "reference", done })
+            bar.show(Progress { stage: "reference", done });
         };
         reference.add_seed(scene, &trace, &mut show).map_err(in_words_of_options)?;
         if seed + 1 == seeds || saved.elapsed() > SAVE_EVERY {
-            write(&args.output, &reference.picture()?, &tone_map, &attributes)?;
+            write(&args.output, &reference.picture()?, tone_map, &attributes)?;
             saved = Instant::now();
         }
     }
@@ -273,11 +273,10 @@ impl Bar {
         Self(bar.with_style(style.unwrap_or_else(|error| unreachable!("a fixed template: {error}"))))
     }
 
-    pub(super) fn show(&self, progress: Progress) -> varikernel::Result<()> {
+    pub(super) fn show(&self, progress: Progress) {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of 1000")]
         self.0.set_position((1000.0 * progress.done) as u64);
         self.0.set_message(progress.stage);
-        Ok(())
     }
 
     pub(super) fn finish(&self) {
@@ -285,7 +284,7 @@ impl Bar {
     }
 }
 
-fn write(path: &Path, layers: &Layers, tone_map: &ToneMap, attributes: &[Attribute]) -> Result<()> {
+fn write(path: &Path, layers: &Layers, tone_map: ToneMap, attributes: &[Attribute]) -> Result<()> {
     if Format::of(path)? == Format::Png {
         return Ok(write_colours(path, &tone_map.apply(&layers.beauty))?);
     }

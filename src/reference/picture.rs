@@ -36,14 +36,15 @@ struct Surface {
     position: DVec3,
     depth: f64,
     normal: DVec3,
-    number: f32,
+    /// Whole, so that equality means the same surface.
+    number: i32,
 }
 
 impl Shown {
     fn at(&self, pixel: UVec2) -> Surface {
         let [x, y, z, depth] = self.position.at(pixel.x, pixel.y).map(f64::from);
         let [normal_x, normal_y, normal_z, _] = self.normal.at(pixel.x, pixel.y).map(f64::from);
-        let number = self.normal.at(pixel.x, pixel.y)[3];
+        let number = whole(self.normal.at(pixel.x, pixel.y)[3]);
         Surface {
             position: DVec3::new(x, y, z),
             depth,
@@ -61,7 +62,7 @@ impl Shown {
     #[must_use]
     pub fn area(&self, pixel: UVec2) -> f64 {
         let surface = self.at(pixel);
-        if surface.number > 0.0 { self.area_on(surface, 1e-3) } else { 0.0 }
+        if surface.number > 0 { self.area_on(surface, 1e-3) } else { 0.0 }
     }
 
     fn area_on(&self, surface: Surface, least_cosine: f64) -> f64 {
@@ -75,7 +76,7 @@ impl Shown {
         let pixel = self.view.pixel_of(photon.position)?;
         let surface = self.at(pixel);
         let before = surface.normal.dot(photon.position.as_dvec3() - surface.position).abs();
-        let contributes = surface.number == photon.surface
+        let contributes = surface.number == whole(photon.surface)
             && surface.normal.dot(photon.normal.as_dvec3()) > LEAST_AGREEMENT
             && before <= 0.5 * f64::from(self.view.pixel_side()) * surface.depth;
         contributes.then_some(pixel)
@@ -99,6 +100,13 @@ impl Shown {
             axes: [surface.normal.cross(along) / disc, along / lying, surface.normal / (THICKNESS * disc)],
         }
     }
+}
+
+/// A surface's number, which is whole.
+fn whole(number: f32) -> i32 {
+    #[expect(clippy::cast_possible_truncation, reason = "fewer than 2^24 surfaces")]
+    let number = number as i32;
+    number
 }
 
 /// A kernel: its middle, the surface that it lies on, and its axes over their half lengths.
@@ -171,7 +179,7 @@ pub fn gather(
     let mut found = counts.map(|_| 0);
     let irradiance = Image::from_fn(shown.position.size(), |x, y| {
         let surface = shown.at(UVec2::new(x, y));
-        if surface.number <= 0.0 {
+        if surface.number <= 0 {
             return [0.0; 3];
         }
         let disc = shown.kernel_on(surface.position, surface, radius.at(x, y));

@@ -66,12 +66,12 @@ pub(super) fn irradiance(
                     let index = f64::from(index);
                     let (row, column) = ((index / side).floor(), index % side);
                     let stratified = row < side;
-                    let [u, v] = if stratified {
+                    let place = if stratified {
                         [(column + dice.number()) / side, (row + dice.number()) / side]
                     } else {
                         [dice.number(), dice.number()]
                     };
-                    let (at, facing) = place_on(triangles, &areas, whole, u, v);
+                    let (at, facing) = place_on(triangles, &areas, whole, place);
                     let away = at - position;
                     let squared = away.length_squared();
                     let to_light = away / squared.sqrt();
@@ -88,16 +88,17 @@ pub(super) fn irradiance(
 }
 
 /// A place on the triangles, evenly by area, for a point (u, v) of the unit square, and the normal there.
-fn place_on(triangles: &[[Vec3; 3]], areas: &[f64], whole: f64, u: f64, v: f64) -> (DVec3, DVec3) {
+fn place_on(triangles: &[[Vec3; 3]], areas: &[f64], whole: f64, [u, v]: [f64; 2]) -> (DVec3, DVec3) {
     let mut left = u * whole;
     let mut index = 0;
     while index + 1 < areas.len() && left >= areas[index] {
         left -= areas[index];
         index += 1;
     }
-    let [a, b, c] = triangles[index].map(Vec3::as_dvec3);
+    let [corner, second, third] = triangles[index].map(Vec3::as_dvec3);
     let share = (left / areas[index]).clamp(0.0, 1.0);
-    ((a + share.sqrt() * (b - a + v * (c - b))), (b - a).cross(c - a).normalize())
+    let at = corner + share.sqrt() * (second - corner + v * (third - second));
+    (at, (second - corner).cross(third - corner).normalize())
 }
 
 /// Radiance of a light that the ray meets before `limit`.

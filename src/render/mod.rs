@@ -118,7 +118,7 @@ pub struct Renderer {
 #[derive(Debug)]
 struct Light {
     surfaces: SurfaceMaps,
-    light: TracedLight,
+    traced: TracedLight,
     bent: Vec<Place>,
 }
 
@@ -127,14 +127,14 @@ impl Light {
         gl: &Gl,
         scene: &Scene,
         settings: &PictureSettings,
-        progress: &mut dyn FnMut(Progress) -> Result<()>,
+        progress: &mut dyn FnMut(Progress),
     ) -> Result<Self> {
         let view = View::new(scene, settings.size);
         let surfaces = SurfaceStage::new(gl)?.draw(scene, view)?;
-        progress(Progress { stage: "direct light", done: 0.0 })?;
+        progress(Progress { stage: "direct light", done: 0.0 });
         let sight = Sight::new(scene, &view);
-        let light = direct_light(scene, &view, &sight, settings, progress)?;
-        Ok(Self { surfaces, light, bent: sight.bent })
+        let light = direct_light(scene, &view, &sight, settings, progress);
+        Ok(Self { surfaces, traced: light, bent: sight.bent })
     }
 }
 
@@ -155,13 +155,13 @@ impl Renderer {
     /// # Errors
     /// [`Error::Setting`](crate::Error::Setting) outside of a setting's range, or if no light shines;
     /// [`Error::TooLarge`](crate::Error::TooLarge); [`Error::Shader`](crate::Error::Shader);
-    /// [`Error::Gl`](crate::Error::Gl) when memory runs out; those of `progress`.
+    /// [`Error::Gl`](crate::Error::Gl) when memory runs out.
     pub fn new(
         gl: &Gl,
         scene: &Scene,
         settings: &PictureSettings,
         trace: &TraceSettings,
-        progress: &mut dyn FnMut(Progress) -> Result<()>,
+        progress: &mut dyn FnMut(Progress),
     ) -> Result<Self> {
         settings.validate()?;
         // What can be refused is refused before anything is traced.
@@ -175,6 +175,9 @@ impl Renderer {
     ///
     /// # Errors
     /// As [`Renderer::new`].
+    ///
+    /// # Panics
+    /// If there are 2^32 photons or more.
     pub fn with_photons(
         gl: &Gl,
         scene: &Scene,
@@ -182,7 +185,7 @@ impl Renderer {
         photons: &[PhotonPoint],
     ) -> Result<Self> {
         settings.validate()?;
-        let light = Light::new(gl, scene, settings, &mut |_| Ok(()))?;
+        let light = Light::new(gl, scene, settings, &mut |_| ())?;
         let mut points = PhotonPoints::new(gl);
         let view = light.surfaces.view();
         let seen: Vec<_> = photons.iter().copied().filter(|photon| photon.may_be_seen(view)).collect();
@@ -193,7 +196,7 @@ impl Renderer {
     }
 
     fn assemble(gl: &Gl, light: Light, traced: Traced) -> Result<Self> {
-        let Light { surfaces, light, bent } = light;
+        let Light { surfaces, traced: light, bent } = light;
         let mut density = DensityStage::new(gl, surfaces.size())?;
         density.add(&surfaces, &traced.points)?;
         Ok(Self { gl: gl.clone(), size: surfaces.size(), surfaces, density, light, bent, traced })
@@ -318,7 +321,7 @@ impl Traced {
         view: &View,
         trace: &TraceSettings,
         needs_grid: bool,
-        progress: &mut dyn FnMut(Progress) -> Result<()>,
+        progress: &mut dyn FnMut(Progress),
     ) -> Result<Self> {
         let emission = Emission::new(scene, trace)?;
         let (mut seen, mut all) = (Vec::new(), Vec::new());
@@ -341,7 +344,8 @@ impl Traced {
         };
         let tally = trace_in_batches(scene, &emission, |photons, followed| {
             keep(photons, &mut points)?;
-            progress(Progress { stage: "photons", done: f64::from(followed) / f64::from(trace.photons) })
+            progress(Progress { stage: "photons", done: f64::from(followed) / f64::from(trace.photons) });
+            Ok(())
         })?;
         points.upload(&seen)?;
         let grid = needs_grid.then(|| PhotonGrid::new(&all, scene.bounds()));
@@ -405,8 +409,8 @@ fn direct_light(
     view: &View,
     sight: &Sight,
     settings: &PictureSettings,
-    progress: &mut dyn FnMut(Progress) -> Result<()>,
-) -> Result<TracedLight> {
+    progress: &mut dyn FnMut(Progress),
+) -> TracedLight {
     let mut direct = Image::filled(view.size(), [0.0; 4]);
     for &(pixel, radiance) in &sight.lights {
         add(&mut direct, pixel, radiance.as_dvec3());
@@ -432,7 +436,7 @@ fn direct_light(
             }
             done += part.len();
             #[expect(clippy::cast_precision_loss, reason = "a share")]
-            progress(Progress { stage: "direct light", done: done as f64 / places as f64 })?;
+            progress(Progress { stage: "direct light", done: done as f64 / places as f64 });
         }
     }
     for place in &sight.straight {
@@ -440,7 +444,7 @@ fn direct_light(
         let [red, green, blue, _] = direct.at(x, y);
         direct.set(x, y, [red, green, blue, 1.0]);
     }
-    Ok(TracedLight { direct, seen_through: Image::filled(view.size(), [0.0; 4]) })
+    TracedLight { direct, seen_through: Image::filled(view.size(), [0.0; 4]) }
 }
 
 fn add(image: &mut Image<[f32; 4]>, pixel: u32, light: DVec3) {

@@ -117,7 +117,7 @@ impl PhotonGrid {
                         for photon in &self.photons[photons] {
                             let squared = photon.position.as_dvec3().distance_squared(place.position);
                             if squared < radius_squared
-                                && photon.surface == place.surface
+                                && (photon.surface - place.surface).abs() < 0.5
                                 && photon.normal.as_dvec3().dot(place.normal) > LEAST_AGREEMENT
                             {
                                 found.push((squared, photon.power));

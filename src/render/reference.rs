@@ -38,10 +38,10 @@ impl Reference {
         gl: &Gl,
         scene: &Scene,
         settings: &PictureSettings,
-        progress: &mut dyn FnMut(Progress) -> Result<()>,
+        progress: &mut dyn FnMut(Progress),
     ) -> Result<Self> {
         settings.validate()?;
-        let Light { surfaces, light, bent } = Light::new(gl, scene, settings, progress)?;
+        let Light { surfaces, traced: light, bent } = Light::new(gl, scene, settings, progress)?;
         Ok(Self {
             gl: gl.clone(),
             surfaces,
@@ -62,7 +62,7 @@ impl Reference {
         &mut self,
         scene: &Scene,
         trace: &TraceSettings,
-        progress: &mut dyn FnMut(Progress) -> Result<()>,
+        progress: &mut dyn FnMut(Progress),
     ) -> Result<()> {
         let view = *self.surfaces.view();
         let traced = Traced::new(&self.gl, scene, &view, trace, !self.bent.is_empty(), progress)?;

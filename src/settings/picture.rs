@@ -115,11 +115,13 @@ pub struct PictureSettings {
 }
 
 impl Default for PictureSettings {
-    /// 512 x 512 pixels, n = 50, MR = 64, splatted with Silverman's kernel, 16 shadow rays.
+    /// 512 x 512 pixels, n = 400, MR = 64, splatted with Silverman's kernel, 16 shadow rays.
+    ///
+    /// Of n from 50 to 800, 400 has the least error on the glass Cornell box with a million photons.
     fn default() -> Self {
         Self {
             size: UVec2::splat(512),
-            min_photons: 50,
+            min_photons: 400,
             max_radius: 64,
             radius: RadiusChoice::Variable,
             kernel: Kernel::Silverman,
@@ -167,6 +169,7 @@ impl PictureSettings {
 }
 
 #[cfg(feature = "serde")]
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde calls it so")]
 fn columns_and_rows<S: serde::Serializer>(size: &UVec2, serializer: S) -> Result<S::Ok, S::Error> {
     serde::Serialize::serialize(&size.to_array(), serializer)
 }

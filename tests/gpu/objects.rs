@@ -180,6 +180,8 @@ fn every_object_is_freed_and_the_state_put_back_also_after_an_error() {
     .unwrap();
     let before = live();
     assert!(before[4] == 2 && before[5] == 1, "the counters count: {before:?}");
+    #[cfg(feature = "render")]
+    fail_in_pictures(&gl, &live);
     {
         let density = random_map(12, 19, 4);
         let map = DensityMap::upload(&gl, &density, CountBounds::UNKNOWN).unwrap();
@@ -226,8 +228,6 @@ fn every_object_is_freed_and_the_state_put_back_also_after_an_error() {
             assert!(failures >= 2, "{method:?}: {failures}");
         }
     }
-    #[cfg(feature = "render")]
-    fail_in_pictures(&gl, &live);
     assert_eq!(live(), before);
     drop(gl);
     assert_eq!(live(), [0; 7]);

@@ -42,7 +42,7 @@ fn every_picture_of_the_shipped_scenes_is_finite() {
         // Few photons: boxes without any, kernels over edges, places in mirrors without photons.
         for photons in [1, 3_000] {
             let trace = TraceSettings { photons, ..TraceSettings::default() };
-            let mut renderer = Renderer::new(&gl, &scene, &settings, &trace, &mut |_| Ok(())).unwrap();
+            let mut renderer = Renderer::new(&gl, &scene, &settings, &trace, &mut |_| ()).unwrap();
             for estimate in [Estimate::Splat, Estimate::Gather { count_correction: true }] {
                 let (layers, account) = renderer.picture(&PictureSettings { estimate, ..settings }).unwrap();
                 assert_finite(&layers, name);
@@ -62,7 +62,7 @@ fn a_view_of_nothing_is_black() {
     scene.camera.direction = -scene.camera.direction;
     let settings = settings(24, Kernel::Box, RadiusChoice::Variable);
     let trace = TraceSettings { photons: 500, ..TraceSettings::default() };
-    let mut renderer = Renderer::new(&gl, &scene, &settings, &trace, &mut |_| Ok(())).unwrap();
+    let mut renderer = Renderer::new(&gl, &scene, &settings, &trace, &mut |_| ()).unwrap();
     let (layers, account) = renderer.picture(&settings).unwrap();
     assert_finite(&layers, "nothing");
     assert!(layers.beauty.values().iter().flatten().all(|&value| value == 0.0));
@@ -86,7 +86,7 @@ fn settings_out_of_range_are_refused_by_name() {
         assert!(error.starts_with(name), "{error}");
     }
     let dark = TraceSettings { photons: 0, ..TraceSettings::default() };
-    let error = Renderer::new(&gl, &scene, &usual, &dark, &mut |_| Ok(())).unwrap_err().to_string();
+    let error = Renderer::new(&gl, &scene, &usual, &dark, &mut |_| ()).unwrap_err().to_string();
     assert!(error.starts_with("photons = 0"), "{error}");
 }
 
@@ -99,13 +99,12 @@ fn sixteen_times_the_photons_bring_it_nearer_to_the_reference() {
     let settings = settings(32, Kernel::Epanechnikov, RadiusChoice::Variable);
     let trace = |photons, seed| TraceSettings { photons, bounces: 3, seed, ..TraceSettings::default() };
     let picture = |settings: &PictureSettings, photons, seed| {
-        let mut renderer =
-            Renderer::new(&gl, &scene, settings, &trace(photons, seed), &mut |_| Ok(())).unwrap();
+        let mut renderer = Renderer::new(&gl, &scene, settings, &trace(photons, seed), &mut |_| ()).unwrap();
         renderer.picture(settings).unwrap().0.indirect
     };
-    let mut reference = Reference::new(&gl, &scene, &settings, &mut |_| Ok(())).unwrap();
+    let mut reference = Reference::new(&gl, &scene, &settings, &mut |_| ()).unwrap();
     for seed in 100..104 {
-        reference.add_seed(&scene, &trace(400_000, seed), &mut |_| Ok(())).unwrap();
+        reference.add_seed(&scene, &trace(400_000, seed), &mut |_| ()).unwrap();
     }
     let reference = reference.picture().unwrap().indirect;
 
@@ -152,7 +151,7 @@ fn a_mirror_shows_what_is_before_it() {
     );
     let settings = settings(16, Kernel::Silverman, RadiusChoice::Variable);
     let trace = TraceSettings { photons: 2_000, ..TraceSettings::default() };
-    let mut renderer = Renderer::new(&gl, &scene, &settings, &trace, &mut |_| Ok(())).unwrap();
+    let mut renderer = Renderer::new(&gl, &scene, &settings, &trace, &mut |_| ()).unwrap();
     let (layers, _) = renderer.picture(&settings).unwrap();
     assert_finite(&layers, "mirror");
     // No diffuse surface is seen straight, and the mirror shows the wall's direct light.

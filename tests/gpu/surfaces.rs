@@ -28,7 +28,7 @@ fn differences(
                 (hit.surface + 1) as f32 * if is_diffuse { 1.0 } else { -1.0 }
             });
             let [place_x, place_y, place_z, _] = position.at(x, y);
-            if normal.at(x, y)[3] != number {
+            if (normal.at(x, y)[3] - number).abs() > 0.5 {
                 others += 1;
             } else if let Some(hit) = hit {
                 let place = Vec3::new(place_x, place_y, place_z);
