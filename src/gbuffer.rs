@@ -106,18 +106,7 @@ fn cubes(scene: &Scene) -> Vec<CubeCorner> {
     let of_sphere = |sphere: &crate::scene::Sphere| {
         let (number, albedo) = appearance(scene, sphere.surface, sphere.material);
         let (centre, radius) = (sphere.centre, sphere.radius);
-        // Six sides of two triangles each: an axis, its direction, and the corners in the plane across it.
-        let sides = (0..3).flat_map(|axis| [-1.0, 1.0].map(|side| (axis, side)));
-        sides.flat_map(move |(axis, side)| {
-            let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
-            corners.map(|[u, v]| {
-                let mut away = [0.0; 3];
-                (away[axis], away[(axis + 1) % 3], away[(axis + 2) % 3]) = (side, u, v);
-                // A little larger, so that rounding leaves no gap at the rim.
-                let position = centre + 1.001 * radius * Vec3::from(away);
-                CubeCorner { position, centre, albedo, radius, number }
-            })
-        })
+        sphere.cube().map(move |position| CubeCorner { position, centre, albedo, radius, number })
     };
     scene.geometry().spheres.iter().flat_map(of_sphere).collect()
 }

@@ -45,7 +45,7 @@
 //! | `cli`, `main` | the program, built on the public library: one file a verb |
 //! | [`measure`] | how right and how fast a result is: differences, timing runs (`bench`), the thesis's tables and claims (`thesis`), both together (`reproduce`), a page of them (`report`) |
 //! | `render` | scene in, picture out: the stages of a picture in order, soft shadows, what is seen in mirrors and through glass |
-//! | `gbuffer`, `density`, `splat`, `shade` | a stage of a picture each: what pixels show, photons counted, kernels drawn, light added up |
+//! | `bounce_map`, `gbuffer`, `density`, `splat`, `shade` | a stage of a picture each: what photons meet first, what pixels show, photons counted, kernels drawn, light added up |
 //! | [`pipeline`] | the stages of a radius map in order; what a host calls |
 //! | `radius` | density map and structure in, radius map out |
 //! | [`structure`] | brute force, mipmaps, pyramid, summed-area table: a section of the thesis each |
@@ -88,6 +88,8 @@
 //! | limited | a pixel whose box of radius MR still holds too few |
 //! | SAT | summed-area table |
 
+#[cfg(feature = "render")]
+mod bounce_map;
 #[cfg(any(feature = "egl", feature = "osmesa"))]
 pub mod context;
 #[cfg(feature = "render")]

@@ -24,6 +24,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("synth", &[]),
     ("exactness", &["reference"]),
     ("maps", &["exactness", "gl", "photon", "view"]),
+    ("bounce_map", &["gl", "photon", "scene"]),
     ("gbuffer", &["gl", "maps", "scene", "view"]),
     ("density", &["exactness", "gl", "maps"]),
     ("splat", &["gl", "maps"]),
@@ -34,7 +35,19 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("pipeline", &["exactness", "gl", "driver_limits", "maps", "radius", "structure"]),
     (
         "render",
-        &["density", "gbuffer", "gl", "maps", "photon", "pipeline", "scene", "shade", "splat", "view"],
+        &[
+            "bounce_map",
+            "density",
+            "gbuffer",
+            "gl",
+            "maps",
+            "photon",
+            "pipeline",
+            "scene",
+            "shade",
+            "splat",
+            "view",
+        ],
     ),
     ("measure", &["exactness", "gl", "maps", "pipeline", "reference", "synth"]),
 ];

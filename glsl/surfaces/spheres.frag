@@ -1,6 +1,5 @@
-// Place, normal and albedo where the line of sight meets a sphere: exact, not as triangles.
+// Place, normal and albedo where the line of sight meets a sphere: exact, not as triangles. From a light, which sphere.
 uniform vec3 camera;
-uniform vec3 view_direction;
 uniform mat4 to_clip;
 
 in vec3 at;
@@ -9,9 +8,15 @@ flat in vec3 reflectance;
 flat in float radius;
 flat in float number;
 
+#ifdef PRIMITIVES
+layout(location = 0) out uint primitive;
+#else
+uniform vec3 view_direction;
+
 layout(location = 0) out vec4 position;
 layout(location = 1) out vec4 normal;
 layout(location = 2) out vec4 albedo;
+#endif
 
 void main()
 {
@@ -29,10 +34,14 @@ void main()
         discard;
     }
     vec3 place = camera + nearest * sight;
-    vec3 outward = (place - centre) / radius;
     vec4 clip = to_clip * vec4(place, 1.0);
     gl_FragDepth = clip.z / clip.w * 0.5 + 0.5;
+#ifdef PRIMITIVES
+    primitive = uint(number + 0.5);
+#else
+    vec3 outward = (place - centre) / radius;
     position = vec4(place, dot(place - camera, view_direction));
     normal = vec4(dot(outward, sight) > 0.0 ? -outward : outward, number);
     albedo = vec4(reflectance, 1.0);
+#endif
 }

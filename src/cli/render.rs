@@ -13,7 +13,7 @@ use varikernel::image::{Attribute, Format, LayerFile, ToneMap, check_writable, w
 use varikernel::photon::TraceSettings;
 use varikernel::render::{Account, Layers, Progress, Reference, Renderer};
 use varikernel::scene::Scene;
-use varikernel::settings::{Estimate, Kernel, PictureSettings, RadiusChoice};
+use varikernel::settings::{Estimate, FirstBounce, Kernel, PictureSettings, RadiusChoice};
 use varikernel::{Error, Gl};
 
 use super::photons::{load, parse_count};
@@ -52,6 +52,10 @@ pub(crate) struct Args {
     #[arg(long, value_name = "SEEDS", num_args = 0..=1, default_missing_value = "16")]
     #[arg(conflicts_with_all = ["gather", "radius"])]
     reference: Option<u32>,
+
+    /// How photons find what they meet first: by a ray each, or from maps rasterised from the lights (thesis 2.6.1).
+    #[arg(long, value_enum, default_value_t = FirstBounce::Rays)]
+    first_bounce: FirstBounce,
 
     /// Print one JSON object instead of a table.
     #[arg(long)]
@@ -152,6 +156,7 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     let trace = args.source.trace();
     let settings = PictureSettings {
         radius: args.radius,
+        first_bounce: args.first_bounce,
         estimate: if args.gather {
             Estimate::Gather { count_correction: args.count_correction }
         } else {

@@ -98,7 +98,17 @@ impl Target {
             for (buffer, value) in (0..).zip(values) {
                 glow.clear_buffer_f32_slice(glow::COLOR, buffer, &value.to_array());
             }
-            if self.depth.is_some() {
+        }
+        self.clear_depth();
+    }
+
+    /// Sets the depth to the farthest, if there is one.
+    pub(crate) fn clear_depth(&mut self) {
+        if self.depth.is_some() {
+            let glow = self.texture().gl().glow();
+            // SAFETY: the context is current while the handle lives.
+            unsafe {
+                glow.bind_framebuffer(glow::DRAW_FRAMEBUFFER, Some(self.framebuffers[0]));
                 glow.depth_mask(true);
                 glow.clear_buffer_f32_slice(glow::DEPTH, 0, &[1.0]);
             }

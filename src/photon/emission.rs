@@ -108,6 +108,12 @@ impl<'a> Emission<'a> {
         &self.settings
     }
 
+    /// Which of the lights that shine a photon leaves, counted from 0 in the order of the scene.
+    #[cfg(feature = "render")]
+    pub(crate) fn light(&self, id: u32) -> usize {
+        self.parts.partition_point(|part| part.first <= id) - 1
+    }
+
     /// The photon of a number from 0 to less than `settings().photons`.
     ///
     /// # Panics

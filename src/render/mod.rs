@@ -15,16 +15,19 @@ use std::f64::consts::PI;
 use glam::{DVec3, UVec2, Vec3};
 use rayon::prelude::*;
 
+use crate::bounce_map::{self, BounceMaps};
 use crate::density::{self, DensityStage};
 use crate::error::Result;
 use crate::gbuffer::{self, SurfaceStage};
 use crate::gl::{Gl, ShaderSource, TextureFormat};
 use crate::image::Image;
 use crate::maps::{ChosenRadius, DensityMap, PhotonPoints, SurfaceMaps};
-use crate::photon::{Emission, Photon, PhotonPoint, TraceSettings, trace_in_batches};
+use crate::photon::{
+    Emission, FirstHit, Photon, PhotonPoint, TraceSettings, trace_from_hits, trace_in_batches,
+};
 use crate::pipeline::RadiusPipeline;
 use crate::scene::Scene;
-use crate::settings::{Estimate, Kernel, PictureSettings, RadiusChoice, Search, Settings};
+use crate::settings::{Estimate, FirstBounce, Kernel, PictureSettings, RadiusChoice, Search, Settings};
 use crate::shade::{self, ShadeStage, TracedLight};
 use crate::splat::{self, GatherStage, SplatStage};
 use crate::view::View;
@@ -167,7 +170,15 @@ impl Renderer {
         // What can be refused is refused before anything is traced.
         Emission::new(scene, trace)?;
         let light = Light::new(gl, scene, settings, progress)?;
-        let traced = Traced::new(gl, scene, light.surfaces.view(), trace, !light.bent.is_empty(), progress)?;
+        let traced = Traced::new(
+            gl,
+            scene,
+            light.surfaces.view(),
+            trace,
+            !light.bent.is_empty(),
+            settings.first_bounce,
+            progress,
+        )?;
         Self::assemble(gl, light, traced)
     }
 
@@ -321,6 +332,7 @@ impl Traced {
         view: &View,
         trace: &TraceSettings,
         needs_grid: bool,
+        first_bounce: FirstBounce,
         progress: &mut dyn FnMut(Progress),
     ) -> Result<Self> {
         let emission = Emission::new(scene, trace)?;
@@ -342,14 +354,34 @@ impl Traced {
             }
             Ok(())
         };
-        let tally = trace_in_batches(scene, &emission, |photons, followed| {
-            keep(photons, &mut points)?;
+        let mut show = |followed: u32| {
             progress(Progress { stage: "photons", done: f64::from(followed) / f64::from(trace.photons) });
-            Ok(())
-        })?;
+        };
+        let landings = match first_bounce {
+            FirstBounce::Rays => {
+                let tally = trace_in_batches(scene, &emission, |photons, followed| {
+                    keep(photons, &mut points)?;
+                    show(followed);
+                    Ok(())
+                })?;
+                tally.total()
+            }
+            FirstBounce::Maps => {
+                let mut maps = BounceMaps::new(gl, scene)?;
+                let (mut landings, mut followed) = (0, 0);
+                while let Some(hits) = maps.next_hits(&emission, followed)? {
+                    let (photons, tally) = trace_from_hits(scene, trace, &hits);
+                    keep(&photons, &mut points)?;
+                    landings += tally.total();
+                    followed += u32::try_from(hits.len()).expect("a part of the photons");
+                    show(followed);
+                }
+                landings
+            }
+        };
         points.upload(&seen)?;
         let grid = needs_grid.then(|| PhotonGrid::new(&all, scene.bounds()));
-        Ok(Self { emitted: trace.photons, landings: tally.total(), points, grid })
+        Ok(Self { emitted: trace.photons, landings, points, grid })
     }
 }
 
@@ -458,10 +490,25 @@ fn rgb([red, green, blue, _]: [f32; 4]) -> [f32; 3] {
     [red, green, blue]
 }
 
+/// All photons of an emission, leaving from some places on the lights, with what they meet first as bounce maps tell it
+/// (thesis 2.6.1); for [`trace_from_hits`].
+///
+/// # Errors
+/// [`Error::Shader`](crate::Error::Shader); [`Error::Gl`](crate::Error::Gl) if the driver fails.
+pub fn first_hits(gl: &Gl, scene: &Scene, emission: &Emission<'_>) -> Result<Vec<FirstHit>> {
+    let mut maps = BounceMaps::new(gl, scene)?;
+    let mut all = Vec::new();
+    while let Some(hits) = maps.next_hits(emission, u32::try_from(all.len()).expect("as many as photons"))? {
+        all.extend(hits);
+    }
+    Ok(all)
+}
+
 /// Every shader that a picture may compile beside those of the radius map.
 #[must_use]
 pub fn shader_sources() -> Vec<ShaderSource> {
     let mut sources = vec![density::source(), shade::source()];
+    sources.extend(bounce_map::sources());
     sources.extend(gbuffer::sources());
     for kernel in Kernel::ALL {
         for fixed in [false, true] {

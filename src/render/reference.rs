@@ -12,7 +12,7 @@ use crate::image::Image;
 use crate::maps::SurfaceMaps;
 use crate::photon::TraceSettings;
 use crate::scene::Scene;
-use crate::settings::{Kernel, PictureSettings};
+use crate::settings::{FirstBounce, Kernel, PictureSettings};
 use crate::shade::TracedLight;
 
 /// The sums over the seeds so far.
@@ -65,7 +65,8 @@ impl Reference {
         progress: &mut dyn FnMut(Progress),
     ) -> Result<()> {
         let view = *self.surfaces.view();
-        let traced = Traced::new(&self.gl, scene, &view, trace, !self.bent.is_empty(), progress)?;
+        let traced =
+            Traced::new(&self.gl, scene, &view, trace, !self.bent.is_empty(), FirstBounce::Rays, progress)?;
         self.density.clear();
         self.density.add(&self.surfaces, &traced.points)?;
         // The counts are checked before they are believed.

@@ -87,6 +87,21 @@ impl Geometry {
 }
 
 impl Sphere {
+    /// A cube around the sphere, a little larger, as 36 corners of triangles for a rasteriser.
+    #[cfg(feature = "render")]
+    pub(crate) fn cube(&self) -> [Vec3; 36] {
+        // Six sides of two triangles each: an axis, its direction, and the corners in the plane across it.
+        let square = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+        std::array::from_fn(|index| {
+            let (side, [u, v]) = (index / 6, square[index % 6]);
+            let axis = side / 2;
+            let mut away = [0.0; 3];
+            (away[axis], away[(axis + 1) % 3], away[(axis + 2) % 3]) =
+                (if side % 2 == 0 { -1.0 } else { 1.0 }, u, v);
+            self.centre + 1.001 * self.radius * Vec3::from(away)
+        })
+    }
+
     /// The sphere as triangles for a rasteriser: `rings` from pole to pole and twice as many around.
     ///
     /// Corners lie on the sphere, so that the triangles are inside it by at most about

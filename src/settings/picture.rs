@@ -91,6 +91,17 @@ pub enum Estimate {
     },
 }
 
+/// How photons find what they meet first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+pub enum FirstBounce {
+    /// By a ray each, on the CPU.
+    Rays,
+    /// From maps that are rasterised from some places on the lights (thesis 2.6.1).
+    Maps,
+}
+
 /// Everything that a picture depends on beside the scene and its photons.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
@@ -106,6 +117,8 @@ pub struct PictureSettings {
     pub radius: RadiusChoice,
     /// The falloff.
     pub kernel: Kernel,
+    /// By rays or maps.
+    pub first_bounce: FirstBounce,
     /// Splat or gather.
     pub estimate: Estimate,
     /// Shadow rays for each area light, a square number is best, at least 1.
@@ -125,6 +138,7 @@ impl Default for PictureSettings {
             max_radius: 64,
             radius: RadiusChoice::Variable,
             kernel: Kernel::Silverman,
+            first_bounce: FirstBounce::Rays,
             estimate: Estimate::Splat,
             light_samples: 16,
             seed: 1,

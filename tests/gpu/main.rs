@@ -4,6 +4,8 @@
 
 mod approximate;
 #[cfg(feature = "render")]
+mod bounce_map;
+#[cfg(feature = "render")]
 mod density;
 mod exactness;
 mod faults;
