@@ -128,7 +128,7 @@ impl BounceMaps {
 
     fn to_clip(&self, place: Vec3, face: usize) -> Mat4 {
         let mut direction = Vec3::ZERO;
-        direction[face / 2] = if face % 2 == 0 { 1.0 } else { -1.0 };
+        direction[face / 2] = if face.is_multiple_of(2) { 1.0 } else { -1.0 };
         let mut up = Vec3::ZERO;
         up[(face / 2 + 1) % 3] = 1.0;
         let camera = Camera { position: place, direction, up, vertical_fov_degrees: 90.0 };

@@ -495,6 +495,9 @@ fn rgb([red, green, blue, _]: [f32; 4]) -> [f32; 3] {
 ///
 /// # Errors
 /// [`Error::Shader`](crate::Error::Shader); [`Error::Gl`](crate::Error::Gl) if the driver fails.
+///
+/// # Panics
+/// Never: there are as many as photons, which are counted in u32.
 pub fn first_hits(gl: &Gl, scene: &Scene, emission: &Emission<'_>) -> Result<Vec<FirstHit>> {
     let mut maps = BounceMaps::new(gl, scene)?;
     let mut all = Vec::new();

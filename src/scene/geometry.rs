@@ -97,7 +97,7 @@ impl Sphere {
             let axis = side / 2;
             let mut away = [0.0; 3];
             (away[axis], away[(axis + 1) % 3], away[(axis + 2) % 3]) =
-                (if side % 2 == 0 { -1.0 } else { 1.0 }, u, v);
+                (if side.is_multiple_of(2) { -1.0 } else { 1.0 }, u, v);
             self.centre + 1.001 * self.radius * Vec3::from(away)
         })
     }

@@ -310,17 +310,26 @@ fn check_picture(host: &Host, before: &[(String, Vec<i32>)]) {
     }
 
     let usual = PictureSettings { size: UVec2::splat(20), light_samples: 1, ..PictureSettings::default() };
-    for estimate in [Estimate::Splat, Estimate::Gather { count_correction: false }] {
-        for radius in [RadiusChoice::Variable, RadiusChoice::Fixed(2)] {
-            let settings = PictureSettings { estimate, radius, ..usual };
-            // A context is current on its own thread alone.
-            let untouched = std::thread::spawn(move || beauty(&crate::support::egl(), &settings, &|_| ()));
-            let untouched = untouched.join().unwrap();
-            let found = beauty(&host.gl, &settings, &|call| assert_unchanged(host, before, call));
-            let error = PictureError::between(&found, &untouched);
-            assert!(error.rmse < 1e-5, "{settings:?} under the host's state: {error:?}");
-        }
+    for settings in [
+        usual,
+        PictureSettings {
+            estimate: Estimate::Gather { count_correction: false },
+            radius: RadiusChoice::Fixed(2),
+            ..usual
+        },
+    ] {
+        // A context is current on its own thread alone.
+        let untouched = std::thread::spawn(move || beauty(&crate::support::egl(), &settings, &|_| ()));
+        let untouched = untouched.join().unwrap();
+        let found = beauty(&host.gl, &settings, &|call| assert_unchanged(host, before, call));
+        let error = PictureError::between(&found, &untouched);
+        assert!(error.rmse < 1e-5, "{settings:?} under the host's state: {error:?}");
     }
+    let scene = varikernel::scene::Scene::shipped("cornell-glass").unwrap();
+    let trace = varikernel::photon::TraceSettings { photons: 300, ..Default::default() };
+    let emission = varikernel::photon::Emission::new(&scene, &trace).unwrap();
+    varikernel::render::first_hits(&host.gl, &scene, &emission).unwrap();
+    assert_unchanged(host, before, "first_hits");
 }
 
 /// The first EGL device that works.
