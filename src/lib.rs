@@ -44,6 +44,8 @@
 //! |---|---|
 //! | `cli`, `main` | the program, built on the public library: one file a verb |
 //! | [`measure`] | how right and how fast a result is: differences, timing runs (`bench`), rivals on the processor (`rivals`), the thesis's tables and claims (`thesis`), both together (`reproduce`), a page of them (`report`) |
+//! | `render` | scene in, picture out: the stages of a picture in order, soft shadows, what is seen in mirrors and through glass |
+//! | `bounce_map`, `gbuffer`, `density`, `splat`, `shade` | a stage of a picture each: what photons meet first, what pixels show, photons counted, kernels drawn, light added up |
 //! | `adaptive` | [`AdaptivePipeline`]: plans each frame by the photons of the ones before |
 //! | [`planner`] | which table, build and search suit a map |
 //! | [`pipeline`] | the stages in order; what a host calls |
@@ -55,6 +57,9 @@
 //! | [`maps`], `mask` | what flows between the stages, each with its unit; which pixels need a radius |
 //! | [`exactness`] | which sums fit which storage, decided before computing |
 //! | [`reference`](mod@reference) | the definition: the same in plain Rust, without OpenGL |
+//! | `photon` | scene in, photons out: traced on the CPU, landing after landing, with statistics |
+//! | `view` | a camera and its pixels: where a place is seen, along which ray a pixel looks |
+//! | `scene` | scene files: camera, lights, materials, triangles and spheres; ray casting |
 //! | `synth` | seeded test maps |
 //! | `context` | headless contexts: EGL devices and OSMesa |
 //! | [`gl`] | programs, textures, passes, timers, saved state; with `context` the only unsafe code |
@@ -63,9 +68,10 @@
 //! # The host's OpenGL state
 //! Each public call puts back what it touches, also when it fails:
 //!
-//! - the current program, vertex array, draw and read framebuffer, and the viewport;
+//! - the current program, vertex array and array buffer, draw and read framebuffer, and the viewport;
 //! - the active texture unit, and the 2D texture, the 2D array texture and the sampler of units 0 to 3;
-//! - blending and the colour mask of draw buffers 0 to 7;
+//! - blending and the colour mask of draw buffers 0 to 7, the blend functions and equations;
+//! - the depth test with its function and mask, depth clamping, polygon offset, and the size of points from programs;
 //! - face culling, scissor test, logic operation, rasteriser discard, primitive restart, clip distances 0 to 7, polygon mode;
 //! - the pixel pack and unpack buffers, and alignment, row length, skips and byte swapping of both;
 //! - by [`MaskMaker`] alone: the depth and the stencil test, their functions and operations, depth mask and range.
@@ -89,25 +95,43 @@
 
 mod adaptive;
 pub mod certificate;
+#[cfg(feature = "render")]
+mod bounce_map;
 #[cfg(any(feature = "egl", feature = "osmesa"))]
 pub mod context;
+#[cfg(feature = "render")]
+mod density;
 mod driver_limits;
 pub mod error;
 pub mod exactness;
 pub mod frame;
+#[cfg(feature = "render")]
+mod gbuffer;
 pub mod gl;
 pub mod image;
 pub mod maps;
 mod mask;
 pub mod measure;
+#[cfg(feature = "scene")]
+pub mod photon;
 pub mod pipeline;
 pub mod planner;
 mod radius;
 pub mod reference;
+#[cfg(feature = "render")]
+pub mod render;
+#[cfg(feature = "scene")]
+pub mod scene;
 pub mod settings;
+#[cfg(feature = "render")]
+mod shade;
+#[cfg(feature = "render")]
+mod splat;
 pub mod structure;
 #[cfg(feature = "synth")]
 pub mod synth;
+#[cfg(feature = "render")]
+pub mod view;
 
 pub use {glam, glow};
 

@@ -1,5 +1,19 @@
 //! What flows between the stages, each with its unit.
 
+#[cfg(feature = "render")]
+mod irradiance;
+#[cfg(feature = "render")]
+mod photons;
+#[cfg(feature = "render")]
+mod surfaces;
+
+#[cfg(feature = "render")]
+pub use irradiance::IrradianceMap;
+#[cfg(feature = "render")]
+pub use photons::{ChosenRadius, PhotonPoints};
+#[cfg(feature = "render")]
+pub use surfaces::SurfaceMaps;
+
 use glam::UVec2;
 
 use crate::error::{Error, Result};

@@ -3,8 +3,11 @@
 mod bench;
 mod compare;
 mod devices;
+mod figures;
 pub(crate) mod output;
+mod photons;
 mod radius;
+mod render;
 mod reproduce;
 mod synth;
 
@@ -16,11 +19,13 @@ use tracing_subscriber::EnvFilter;
 
 const EXAMPLES: &str = "\
 Examples:
+  varikernel render -o picture.png             a glass Cornell box, by photons with variable kernels
   varikernel synth caustic -o map.exr          make a map to try things on
   varikernel radius map.exr -o radius.png      a picture of its radius map
   varikernel radius map.exr -o radius.exr --verify --method pyramid
   varikernel radius map.exr -o radius.exr --certify
   varikernel compare radius.exr other.npy      how two maps differ
+  varikernel photons -o photons.npy            trace photons through a Cornell box
   varikernel reproduce                         the thesis's numbers from this machine
   varikernel devices                           the OpenGL devices found here";
 
@@ -42,10 +47,13 @@ pub(crate) struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Verb {
+    Render(render::Args),
+    Figures(figures::Args),
     Radius(radius::Args),
     Bench(Box<bench::Args>),
     Reproduce(reproduce::Args),
     Compare(compare::Args),
+    Photons(photons::Args),
     Synth(synth::Args),
     Devices(devices::Args),
 }
@@ -59,8 +67,11 @@ pub(crate) enum Outcome {
 
 pub(crate) fn run(cli: Cli) -> Result<Outcome> {
     match cli.verb {
+        Verb::Render(args) => render::run(&args),
+        Verb::Figures(args) => figures::run(&args),
         Verb::Radius(args) => radius::run(&args),
         Verb::Compare(args) => compare::run(&args),
+        Verb::Photons(args) => photons::run(&args),
         Verb::Synth(args) => synth::run(&args),
         Verb::Reproduce(args) => reproduce::run(&args),
         Verb::Devices(args) => devices::run(&args),

@@ -1,11 +1,13 @@
-//! What goes to stdout and stderr.
+//! What goes to stdout and stderr, and whether files can take the rest.
 
 use std::io::{self, Write as _};
+use std::path::{Path, PathBuf};
 
-use anyhow::{Context as _, Result};
+use anyhow::{Context as _, Result, bail};
 use comfy_table::presets::NOTHING;
 use comfy_table::{ContentArrangement, Table};
 use serde::Serialize;
+use varikernel::image::check_writable;
 
 /// Columns of a terminal that tables fit into.
 const WIDTH: u16 = 80;
@@ -48,4 +50,27 @@ pub(crate) fn print_error(error: &anyhow::Error) {
 pub(crate) fn is_broken_pipe(error: &anyhow::Error) -> bool {
     let mut causes = error.chain().filter_map(|cause| cause.downcast_ref::<io::Error>());
     causes.any(|cause| cause.kind() == io::ErrorKind::BrokenPipe)
+}
+
+/// Refuses outputs, by the names of their options, that can't be written or would replace the input or each other.
+pub(crate) fn check_files(input: (&str, &Path), outputs: &[(&str, Option<&Path>)]) -> Result<()> {
+    let mut taken = vec![(input.0, place_of(input.1))];
+    for &(name, path) in outputs {
+        let Some(path) = path else { continue };
+        check_writable(path)?;
+        let place = place_of(path);
+        if let Some((other, _)) = taken.iter().find(|(_, other)| *other == place) {
+            bail!("{}: {name} is the same file as {other}\nhelp: choose another name", path.display());
+        }
+        taken.push((name, place));
+    }
+    Ok(())
+}
+
+/// The file itself, whichever way it is named and whether or not it exists.
+fn place_of(path: &Path) -> PathBuf {
+    path.canonicalize().unwrap_or_else(|_| {
+        let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
+        folder.canonicalize().unwrap_or_default().join(path.file_name().unwrap_or_default())
+    })
 }

@@ -8,9 +8,7 @@ use anyhow::{Result, anyhow, bail};
 use clap::ValueEnum as _;
 use varikernel::context::{self, DeviceChoice};
 use varikernel::gl::{self, DeviceInfo};
-use varikernel::image::{
-    Attribute, Format, Picture, ReadOptions, check_writable, read_counts, write_counts, write_picture,
-};
+use varikernel::image::{Attribute, Format, Picture, ReadOptions, read_counts, write_counts, write_picture};
 use varikernel::measure::{Difference, RadiusSummary, total_photons};
 use varikernel::planner::{self, Census, Choice};
 use varikernel::settings::{
@@ -293,26 +291,12 @@ fn in_words_of_options(error: Error, map: &Path) -> anyhow::Error {
 
 /// Refuses outputs that can't be written, and ones that would replace the map or each other.
 fn check_files(args: &Args) -> Result<()> {
-    let mut taken = vec![("the map", place_of(&args.map))];
-    for (name, path) in [("--output", Some(&args.output)), ("--limited-mask", args.limited_mask.as_ref())] {
-        let Some(path) = path else { continue };
+    for path in [Some(&args.output), args.limited_mask.as_ref()].into_iter().flatten() {
         Format::of(path)?;
-        check_writable(path)?;
-        let place = place_of(path);
-        if let Some((other, _)) = taken.iter().find(|(_, other)| *other == place) {
-            bail!("{}: {name} is the same file as {other}\nhelp: choose another name", path.display());
-        }
-        taken.push((name, place));
     }
-    Ok(())
-}
-
-/// The file itself, whichever way it is named and whether or not it exists.
-fn place_of(path: &Path) -> PathBuf {
-    path.canonicalize().unwrap_or_else(|_| {
-        let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
-        folder.canonicalize().unwrap_or_default().join(path.file_name().unwrap_or_default())
-    })
+    let outputs =
+        [("--output", Some(args.output.as_path())), ("--limited-mask", args.limited_mask.as_deref())];
+    output::check_files(("the map", &args.map), &outputs)
 }
 
 fn check_fits(args: &Args, counts: &Image<u32>, device: &DeviceInfo) -> Result<()> {

@@ -7,6 +7,8 @@
 
 mod device_info;
 mod fragment_test;
+#[cfg(feature = "render")]
+mod geometry;
 mod pass;
 mod program;
 mod query;
@@ -18,6 +20,8 @@ mod timer;
 
 pub use device_info::DeviceInfo;
 pub(crate) use fragment_test::{FragmentTest, fill_where};
+#[cfg(feature = "render")]
+pub(crate) use geometry::Vertices;
 pub(crate) use pass::{Pass, Target};
 pub(crate) use program::Program;
 pub(crate) use query::Query;

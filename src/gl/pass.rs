@@ -1,4 +1,4 @@
-//! One full-screen draw: label, inputs, uniforms and target in one expression.
+//! One draw, over the whole target or of geometry: label, inputs, uniforms and target in one expression.
 
 use glam::UVec2;
 use glow::HasContext as _;
@@ -13,7 +13,9 @@ use crate::error::{Error, Result};
 pub(crate) struct Target {
     gl: Gl,
     textures: Vec<Texture>,
-    framebuffers: Vec<glow::Framebuffer>,
+    /// What hides what, for draws of geometry.
+    pub(super) depth: Option<Texture>,
+    pub(super) framebuffers: Vec<glow::Framebuffer>,
 }
 
 impl Target {
@@ -22,6 +24,11 @@ impl Target {
     /// # Errors
     /// [`Error::Gl`] with the framebuffer's status if the driver can't draw to them.
     pub(crate) fn new(gl: &Gl, textures: Vec<Texture>) -> Result<Self> {
+        Self::assemble(gl, textures, None)
+    }
+
+    /// As [`Target::new`], with a depth buffer if one is given.
+    pub(super) fn assemble(gl: &Gl, textures: Vec<Texture>, depth: Option<Texture>) -> Result<Self> {
         let first = &textures[0];
         assert!(
             textures.iter().all(|t| t.size() == first.size() && t.levels() == first.levels()),
@@ -30,7 +37,7 @@ impl Target {
         let buffers: u32 = textures.iter().map(|texture| texture.layers().unwrap_or(1)).sum();
         assert!(buffers <= DRAW_BUFFERS, "StateGuard covers {DRAW_BUFFERS} draw buffers");
         let levels = first.levels();
-        let mut target = Self { gl: gl.clone(), textures, framebuffers: Vec::new() };
+        let mut target = Self { gl: gl.clone(), textures, depth, framebuffers: Vec::new() };
         let glow = gl.glow();
         for level in 0..levels {
             // SAFETY: the context is current while the handle lives.
@@ -42,6 +49,9 @@ impl Target {
                 let mut free = attachments.iter().copied();
                 for texture in &target.textures {
                     texture.attach(&mut free, level);
+                }
+                if let Some(depth) = &target.depth {
+                    depth.attach(&mut std::iter::once(glow::DEPTH_ATTACHMENT), level);
                 }
                 glow.draw_buffers(&attachments);
                 let status = glow.check_framebuffer_status(glow::FRAMEBUFFER);
@@ -222,6 +232,24 @@ impl<'a> Pass<'a> {
     }
 
     fn draw(&self, target: &Target, level: u32, first: UVec2, end: UVec2) -> Result<()> {
+        self.prepare(target, level, first, end, |gl| {
+            // SAFETY: the context is current, and the vertex stage reads no buffer.
+            unsafe {
+                gl.glow().bind_vertex_array(Some(gl.vertex_array()));
+                gl.glow().draw_arrays(glow::TRIANGLES, 0, self.vertices.cast_signed());
+            }
+        })
+    }
+
+    /// Sets everything up, and lets `draw` bind vertices and draw them.
+    pub(super) fn prepare(
+        &self,
+        target: &Target,
+        level: u32,
+        first: UVec2,
+        end: UVec2,
+        draw: impl FnOnce(&Gl),
+    ) -> Result<()> {
         assert!(first.cmplt(end).all(), "a pass draws something: from {first} to {end}");
         let (corner, size) = (first.as_ivec2(), (end - first).as_ivec2());
         let gl = self.program.gl();
@@ -236,14 +264,13 @@ impl<'a> Pass<'a> {
             for &(name, value) in &self.uniforms {
                 self.program.set(name, value)?;
             }
-            // SAFETY: the context is current, the framebuffer is complete, and the vertex stage reads no buffer.
+            // SAFETY: the context is current, and the framebuffer is complete.
             unsafe {
                 let glow = gl.glow();
                 glow.bind_framebuffer(glow::DRAW_FRAMEBUFFER, Some(target.framebuffers[level as usize]));
                 glow.viewport(corner.x, corner.y, size.x, size.y);
-                glow.bind_vertex_array(Some(gl.vertex_array()));
-                glow.draw_arrays(glow::TRIANGLES, 0, self.vertices.cast_signed());
             }
+            draw(gl);
             Ok(())
         })
     }

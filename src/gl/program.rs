@@ -13,6 +13,12 @@ pub(crate) enum Uniform {
     Int(i32),
     Uint(u32),
     IntPair(glam::IVec2),
+    #[cfg(feature = "render")]
+    Float(f32),
+    #[cfg(feature = "render")]
+    FloatTriple(glam::Vec3),
+    #[cfg(feature = "render")]
+    Matrix(glam::Mat4),
 }
 
 impl From<i32> for Uniform {
@@ -33,7 +39,28 @@ impl From<glam::IVec2> for Uniform {
     }
 }
 
-/// A linked program of the full-screen vertex stage and one fragment shader.
+#[cfg(feature = "render")]
+impl From<f32> for Uniform {
+    fn from(value: f32) -> Self {
+        Self::Float(value)
+    }
+}
+
+#[cfg(feature = "render")]
+impl From<glam::Vec3> for Uniform {
+    fn from(value: glam::Vec3) -> Self {
+        Self::FloatTriple(value)
+    }
+}
+
+#[cfg(feature = "render")]
+impl From<glam::Mat4> for Uniform {
+    fn from(value: glam::Mat4) -> Self {
+        Self::Matrix(value)
+    }
+}
+
+/// A linked program of a vertex stage, mostly the full-screen one, and one fragment shader.
 #[derive(Debug)]
 pub(crate) struct Program {
     gl: Gl,
@@ -116,6 +143,16 @@ impl Program {
                 (glow::INT, Uniform::Int(value)) => glow.uniform_1_i32(location, value),
                 (glow::UNSIGNED_INT, Uniform::Uint(value)) => glow.uniform_1_u32(location, value),
                 (glow::INT_VEC2, Uniform::IntPair(value)) => glow.uniform_2_i32(location, value.x, value.y),
+                #[cfg(feature = "render")]
+                (glow::FLOAT, Uniform::Float(value)) => glow.uniform_1_f32(location, value),
+                #[cfg(feature = "render")]
+                (glow::FLOAT_VEC3, Uniform::FloatTriple(value)) => {
+                    glow.uniform_3_f32(location, value.x, value.y, value.z);
+                }
+                #[cfg(feature = "render")]
+                (glow::FLOAT_MAT4, Uniform::Matrix(value)) => {
+                    glow.uniform_matrix_4_f32_slice(location, false, &value.to_cols_array());
+                }
                 (kind, value) => panic!("{}: \"{name}\" of type {kind:#06x} set to {value:?}", self.label),
             }
         }

@@ -1,7 +1,7 @@
 //! What the library touches of a host's OpenGL state, saved and put back.
 //!
-//! The list is in the crate's documentation, "The host's OpenGL state". Depth and stencil tests need no change, since
-//! the framebuffers drawn to have neither buffer; multisampling likewise.
+//! The list is in the crate's documentation, "The host's OpenGL state". The stencil test needs no change, since the
+//! framebuffers drawn to have no such buffer; multisampling likewise.
 
 use glow::HasContext as _;
 
@@ -12,8 +12,13 @@ pub(super) const UNITS: u32 = 4;
 /// Draw buffers that passes use.
 pub(super) const DRAW_BUFFERS: u32 = 8;
 
-const CAPABILITIES: [u32; 13] = [
+const CAPABILITIES: [u32; 17] = [
     glow::CULL_FACE,
+    glow::DEPTH_TEST,
+    glow::DEPTH_CLAMP,
+    glow::POLYGON_OFFSET_FILL,
+    // A vertex shader that draws points says how large they are, where it draws them.
+    glow::PROGRAM_POINT_SIZE,
     glow::SCISSOR_TEST,
     glow::COLOR_LOGIC_OP,
     glow::RASTERIZER_DISCARD,
@@ -51,6 +56,14 @@ struct Unit {
     sampler: Option<glow::Sampler>,
 }
 
+/// How fragments are added to what is there: factors and equations, for colour and alpha.
+#[derive(Clone, Copy, Debug)]
+struct Blending {
+    source: [u32; 2],
+    destination: [u32; 2],
+    equation: [u32; 2],
+}
+
 /// Saves the state above and sets the library's own; puts the saved one back when dropped.
 #[derive(Debug)]
 pub(crate) struct StateGuard {
@@ -65,6 +78,10 @@ pub(crate) struct StateGuard {
     draw_buffers: [(bool, [bool; 4]); DRAW_BUFFERS as usize],
     capabilities: [bool; CAPABILITIES.len()],
     polygon_mode: u32,
+    blending: Blending,
+    depth_function: u32,
+    depth_mask: bool,
+    array_buffer: Option<glow::Buffer>,
     pixel_store: [i32; PIXEL_STORE.len()],
     pack_buffer: Option<glow::Buffer>,
     unpack_buffer: Option<glow::Buffer>,
@@ -105,6 +122,7 @@ impl StateGuard {
             // Two values, front and back, although a core profile sets them together.
             let mut polygon_mode = [0; 2];
             glow.get_parameter_i32_slice(glow::POLYGON_MODE, &mut polygon_mode);
+            let state = |names: [u32; 2]| names.map(|name| glow.get_parameter_i32(name).cast_unsigned());
             Self {
                 gl: gl.clone(),
                 program: glow.get_parameter_program(glow::CURRENT_PROGRAM),
@@ -127,6 +145,14 @@ impl StateGuard {
                 }),
                 capabilities: CAPABILITIES.map(|capability| glow.is_enabled(capability)),
                 polygon_mode: polygon_mode[0].cast_unsigned(),
+                blending: Blending {
+                    source: state([glow::BLEND_SRC_RGB, glow::BLEND_SRC_ALPHA]),
+                    destination: state([glow::BLEND_DST_RGB, glow::BLEND_DST_ALPHA]),
+                    equation: state([glow::BLEND_EQUATION_RGB, glow::BLEND_EQUATION_ALPHA]),
+                },
+                depth_function: glow.get_parameter_i32(glow::DEPTH_FUNC).cast_unsigned(),
+                depth_mask: glow.get_parameter_bool(glow::DEPTH_WRITEMASK),
+                array_buffer: glow.get_parameter_buffer(glow::ARRAY_BUFFER_BINDING),
                 pixel_store: PIXEL_STORE.map(|(parameter, _)| glow.get_parameter_i32(parameter)),
                 pack_buffer: glow.get_parameter_buffer(glow::PIXEL_PACK_BUFFER_BINDING),
                 unpack_buffer: glow.get_parameter_buffer(glow::PIXEL_UNPACK_BUFFER_BINDING),
@@ -161,6 +187,12 @@ impl Drop for StateGuard {
                 }
                 glow.color_mask_draw_buffer(index, red, green, blue, alpha);
             }
+            let Blending { source, destination, equation } = self.blending;
+            glow.blend_func_separate(source[0], destination[0], source[1], destination[1]);
+            glow.blend_equation_separate(equation[0], equation[1]);
+            glow.depth_func(self.depth_function);
+            glow.depth_mask(self.depth_mask);
+            glow.bind_buffer(glow::ARRAY_BUFFER, self.array_buffer);
             for (unit, Unit { plane, array, sampler }) in (0..).zip(self.units) {
                 glow.active_texture(glow::TEXTURE0 + unit);
                 glow.bind_texture(glow::TEXTURE_2D, plane);

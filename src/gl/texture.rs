@@ -22,6 +22,10 @@ pub enum TextureFormat {
     R8Uint,
     /// GL_RGBA32UI: four neighbours in one texel, between passes only.
     Rgba32Uint,
+    /// GL_RGBA32F: places, normals, colours.
+    Rgba32Float,
+    /// GL_DEPTH_COMPONENT32F: what hides what.
+    Depth32Float,
 }
 
 impl TextureFormat {
@@ -35,6 +39,8 @@ impl TextureFormat {
             Self::R16Uint => glow::R16UI,
             Self::R8Uint => glow::R8UI,
             Self::Rgba32Uint => glow::RGBA32UI,
+            Self::Rgba32Float => glow::RGBA32F,
+            Self::Depth32Float => glow::DEPTH_COMPONENT32F,
         }
     }
 
@@ -45,19 +51,21 @@ impl TextureFormat {
             Self::R16Uint => (glow::RED_INTEGER, glow::UNSIGNED_SHORT),
             Self::R8Uint => (glow::RED_INTEGER, glow::UNSIGNED_BYTE),
             Self::Rgba32Uint => (glow::RGBA_INTEGER, glow::UNSIGNED_INT),
+            Self::Rgba32Float => (glow::RGBA, glow::FLOAT),
+            Self::Depth32Float => (glow::DEPTH_COMPONENT, glow::FLOAT),
         }
     }
 
     pub(crate) fn is_float(self) -> bool {
-        self == Self::R32Float
+        matches!(self, Self::R32Float | Self::Rgba32Float | Self::Depth32Float)
     }
 
     pub(super) fn texel_bytes(self) -> usize {
         match self {
-            Self::R32Uint | Self::R32Float => 4,
+            Self::R32Uint | Self::R32Float | Self::Depth32Float => 4,
             Self::R16Uint => 2,
             Self::R8Uint => 1,
-            Self::Rgba32Uint => 16,
+            Self::Rgba32Uint | Self::Rgba32Float => 16,
         }
     }
 
@@ -70,6 +78,8 @@ impl TextureFormat {
             Self::R16Uint => "GL_R16UI",
             Self::R8Uint => "GL_R8UI",
             Self::Rgba32Uint => "GL_RGBA32UI",
+            Self::Rgba32Float => "GL_RGBA32F",
+            Self::Depth32Float => "GL_DEPTH_COMPONENT32F",
         }
     }
 }

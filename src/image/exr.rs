@@ -1,4 +1,4 @@
-//! OpenEXR: one channel of f16, f32 or u32 in, one channel of u32 with attributes out.
+//! OpenEXR: one channel of f16, f32 or u32 in, channels of f32 and u32 with attributes out.
 
 use std::collections::HashSet;
 use std::io::{self, BufRead, Seek, Write};
@@ -13,6 +13,7 @@ use exr::meta::attribute::{
 use exr::meta::header::{Header, LayerAttributes};
 use exr::meta::{BlockDescription, MetaData, magic_number, sequence_end};
 use exr::prelude::f16;
+use glam::UVec2;
 
 use super::Image;
 use super::attribute::{Attribute, AttributeValue};
@@ -180,21 +181,49 @@ fn problem(error: ExrError) -> Problem {
     }
 }
 
-/// Writes one channel of u32, scan lines, ZIP compression. The same input gives the same bytes.
-///
-/// # Panics
-/// If a name is empty, too long, not ASCII, or in the file already.
+/// Writes one channel of u32; see [`write_channels`].
 pub(super) fn write(
     file: &mut impl Write,
     channel: &str,
     image: &Image<u32>,
     attributes: &[Attribute],
 ) -> io::Result<()> {
+    write_channels(file, image.size(), &[(channel.to_owned(), Samples::U32(image.values()))], attributes)
+}
+
+/// The values of a channel, row after row.
+#[derive(Clone, Debug)]
+pub(super) enum Samples<'a> {
+    U32(&'a [u32]),
+    #[cfg_attr(not(feature = "render"), expect(dead_code, reason = "only pictures have such channels"))]
+    F32(Vec<f32>),
+}
+
+/// Writes channels of an image of `size`, scan lines, ZIP compression. The same input gives the same bytes.
+///
+/// # Panics
+/// If a name is empty, too long, not ASCII, or in the file already, or if samples do not fill the image.
+pub(super) fn write_channels(
+    file: &mut impl Write,
+    size: UVec2,
+    channels: &[(String, Samples<'_>)],
+    attributes: &[Attribute],
+) -> io::Result<()> {
     let fits = |name: &str| name.is_ascii() && (1..=255).contains(&name.len());
-    assert!(fits(channel), "\"{channel}\" can't name a channel");
-    let (width, height) = (image.size().x as usize, image.size().y as usize);
-    let channel = ChannelDescription::named(Text::from(channel), SampleType::U32);
-    let header = Header::new(Text::default(), (width, height), std::iter::once(channel).collect())
+    let (width, height) = (size.x as usize, size.y as usize);
+    // The format wants them sorted.
+    let mut channels: Vec<_> = channels.iter().collect();
+    channels.sort_by(|(a, _), (b, _)| a.as_bytes().cmp(b.as_bytes()));
+    let describe = |(name, samples): &&(String, Samples<'_>)| {
+        assert!(fits(name), "\"{name}\" can't name a channel");
+        let (kind, count) = match samples {
+            Samples::U32(values) => (SampleType::U32, values.len()),
+            Samples::F32(values) => (SampleType::F32, values.len()),
+        };
+        assert_eq!(count, width * height, "samples of channel \"{name}\"");
+        ChannelDescription::named(Text::from(name.as_str()), kind)
+    };
+    let header = Header::new(Text::default(), (width, height), channels.iter().map(describe).collect())
         .with_encoding(Compression::ZIP16, BlockDescription::ScanLines, LineOrder::Increasing)
         .with_attributes(LayerAttributes::default());
     let headers = std::slice::from_ref(&header);
@@ -224,8 +253,11 @@ pub(super) fn write(
     for (_, place) in enumerate_ordered_header_block_indices(headers) {
         let block = UncompressedBlock::from_lines(&header.channels, place, |line| {
             let start = line.location.position.y() * width;
-            line.write_samples_from_slice(&image.values()[start..start + width])
-                .expect("a line of the block has room for a row");
+            match &channels[line.location.channel].1 {
+                Samples::U32(values) => line.write_samples_from_slice(&values[start..start + width]),
+                Samples::F32(values) => line.write_samples_from_slice(&values[start..start + width]),
+            }
+            .expect("a line of the block has room for a row");
         });
         offsets.push((first_chunk + chunks.len()) as u64);
         let chunk = block.compress_to_chunk(headers).map_err(io_error)?;

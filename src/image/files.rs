@@ -84,7 +84,7 @@ impl fmt::Display for Format {
 /// 0 to 4294967295.
 pub fn read_counts(path: &Path, options: &ReadOptions<'_>) -> Result<Image<u32>> {
     let format = Format::of(path)?;
-    let (mut file, length) = open(path)?;
+    let (mut file, length) = open_file(path)?;
     let found = check_signature(&mut file, format).and_then(|()| match format {
         Format::Exr => exr::read(file, length, options),
         Format::Npy => npy::read(file, length, options),
@@ -131,7 +131,10 @@ pub fn write_picture(path: &Path, image: &Image<u32>, picture: &Picture<'_>) -> 
 }
 
 /// The file, and its length in bytes.
-fn open(path: &Path) -> Result<(BufReader<File>, u64)> {
+///
+/// # Errors
+/// If there is no such file, it is a folder, a device or a pipe, or may not be read.
+pub(crate) fn open_file(path: &Path) -> Result<(BufReader<File>, u64)> {
     let failed = |error: std::io::Error| match error.kind() {
         ErrorKind::NotFound => {
             Error::file(path, "there is no such file", "check the path; it counts from the current folder")

@@ -14,12 +14,18 @@ mod counts;
 mod exr;
 #[cfg(feature = "files")]
 mod files;
+#[cfg(feature = "render")]
+mod layers;
 #[cfg(feature = "files")]
 mod npy;
 #[cfg(feature = "files")]
 mod picture;
 #[cfg(feature = "files")]
 mod png;
+#[cfg(feature = "render")]
+mod sheet;
+#[cfg(feature = "render")]
+mod tone;
 
 #[cfg(feature = "files")]
 pub use atomic::{check_writable, write_atomically};
@@ -27,10 +33,20 @@ pub use atomic::{check_writable, write_atomically};
 pub use attribute::{Attribute, AttributeValue};
 #[cfg(feature = "files")]
 pub use counts::ReadOptions;
+#[cfg(feature = "scene")]
+pub(crate) use files::open_file;
 #[cfg(feature = "files")]
 pub use files::{Format, read_counts, write_counts, write_picture};
+#[cfg(feature = "render")]
+pub use layers::{LayerFile, write_colours};
 #[cfg(feature = "files")]
 pub use picture::Picture;
+#[cfg(feature = "render")]
+pub use picture::picture_of;
+#[cfg(feature = "render")]
+pub use sheet::{Tile, contact_sheet};
+#[cfg(feature = "render")]
+pub use tone::ToneMap;
 
 use glam::UVec2;
 

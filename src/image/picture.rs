@@ -38,6 +38,14 @@ const BAR: u32 = 10;
 const TICK: u32 = 3;
 const LABEL_GAP: u32 = 2;
 
+/// The colours of a map alone, a pixel for each value, without a legend.
+#[cfg(feature = "render")]
+#[must_use]
+pub fn picture_of(image: &Image<u32>, picture: &Picture<'_>) -> Image<[u8; 3]> {
+    let colours = ColourMap::new(picture.range.as_ref(), image);
+    image.map(|value| colours.colour(value))
+}
+
 /// Draws the map and its legend.
 pub(super) fn draw(image: &Image<u32>, picture: &Picture<'_>) -> Image<[u8; 3]> {
     let colours = ColourMap::new(picture.range.as_ref(), image);
@@ -85,7 +93,7 @@ impl Legend {
         let (left, bar_width) = (MARGIN * scale, self.width - 2 * MARGIN * scale);
         let mut y = top + MARGIN * scale;
         for line in &self.lines {
-            self.draw_text(canvas, UVec2::new(left, y), line);
+            draw_text(canvas, UVec2::new(left, y), line, scale, INK);
             y += LINE * scale;
         }
 
@@ -114,18 +122,20 @@ impl Legend {
             }
             taken.push((start, start + label_width));
             fill(canvas, UVec2::new(left + x, y), UVec2::new(scale, TICK * scale), INK);
-            self.draw_text(canvas, UVec2::new(left + start, y + (TICK + LABEL_GAP) * scale), &label);
+            let at = UVec2::new(left + start, y + (TICK + LABEL_GAP) * scale);
+            draw_text(canvas, at, &label, scale, INK);
         }
     }
+}
 
-    fn draw_text(&self, canvas: &mut Image<[u8; 3]>, at: UVec2, text: &str) {
-        for (column, letter) in (0..).zip(text.chars()) {
-            let glyph = BASIC_FONTS.get(letter).or_else(|| LATIN_FONTS.get(letter)).unwrap_or(UNKNOWN);
-            for (y, row) in (0..).zip(glyph) {
-                for x in (0..GLYPH).filter(|x| row >> x & 1 == 1) {
-                    let corner = at + UVec2::new(column * GLYPH + x, y) * self.scale;
-                    fill(canvas, corner, UVec2::splat(self.scale), INK);
-                }
+/// Draws one line of text, `scale` pixels for one of the font.
+pub(super) fn draw_text(canvas: &mut Image<[u8; 3]>, at: UVec2, text: &str, scale: u32, ink: [u8; 3]) {
+    for (column, letter) in (0..).zip(text.chars()) {
+        let glyph = BASIC_FONTS.get(letter).or_else(|| LATIN_FONTS.get(letter)).unwrap_or(UNKNOWN);
+        for (y, row) in (0..).zip(glyph) {
+            for x in (0..GLYPH).filter(|x| row >> x & 1 == 1) {
+                let corner = at + UVec2::new(column * GLYPH + x, y) * scale;
+                fill(canvas, corner, UVec2::splat(scale), ink);
             }
         }
     }

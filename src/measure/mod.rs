@@ -3,6 +3,8 @@
 #[cfg(feature = "bench")]
 pub mod bench;
 mod difference;
+#[cfg(feature = "render")]
+mod picture;
 #[cfg(feature = "report")]
 pub mod report;
 #[cfg(feature = "report")]
@@ -16,6 +18,8 @@ pub mod thesis;
 mod unit_pass;
 
 pub use difference::{Difference, Place};
+#[cfg(feature = "render")]
+pub use picture::PictureError;
 pub use statistics::Statistics;
 pub use summary::{RadiusSummary, total_photons};
 pub use unit_pass::{Unit, UnitPass};

@@ -6,11 +6,15 @@
 pub mod as_printed;
 mod definition;
 mod naive_mipmap;
+#[cfg(feature = "render")]
+mod picture;
 pub mod pyramid;
 mod table;
 
 pub use definition::{enough, radius};
 pub use naive_mipmap::naive_mipmap;
+#[cfg(feature = "render")]
+pub use picture::{Shown, gather, photon_density, splat};
 pub use table::{Table, binary_search, radius_by_table};
 
 use glam::UVec2;

@@ -4,8 +4,12 @@
 //! thesis ran.
 
 mod faults;
+#[cfg(feature = "render")]
+mod picture;
 
 pub use faults::Faults;
+#[cfg(feature = "render")]
+pub use picture::{Estimate, FirstBounce, Kernel, MAX_PICTURE_RADIUS, PictureSettings, RadiusChoice};
 
 use crate::error::{Error, Result};
 

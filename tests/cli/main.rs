@@ -8,6 +8,8 @@ mod devices;
 mod exact;
 mod files;
 mod outputs;
+mod photons;
+mod render;
 mod synth;
 
 use std::collections::BTreeMap;

@@ -126,7 +126,7 @@ fn help_fits_80_columns_and_names_every_verb() {
         String::from_utf8(run.get_output().stdout.clone()).unwrap()
     };
     let help = help_of("--help");
-    for verb in ["radius", "compare", "synth", "devices"] {
+    for verb in ["radius", "compare", "photons", "synth", "devices"] {
         assert!(help.contains(&format!("\n  {verb} ")), "{help}");
         let pages = ["-h", "--help"].map(|option| help_of(&format!("{verb} {option}")));
         let lines = pages.iter().flat_map(|page| page.lines());

@@ -4,13 +4,25 @@
 
 mod approximate;
 mod certificate;
+#[cfg(feature = "render")]
+mod bounce_map;
+#[cfg(feature = "render")]
+mod density;
 mod exactness;
 mod faults;
 mod frames;
 mod host;
 mod objects;
+#[cfg(feature = "render")]
+mod picture;
 mod radius;
 mod shaders;
+#[cfg(feature = "render")]
+mod splat;
+#[cfg(feature = "render")]
+mod stage;
 mod state;
 mod support;
+#[cfg(feature = "render")]
+mod surfaces;
 mod variations;

@@ -20,6 +20,7 @@ static SHADERS: AtomicI64 = AtomicI64::new(0);
 static SAMPLERS: AtomicI64 = AtomicI64::new(0);
 static VERTEX_ARRAYS: AtomicI64 = AtomicI64::new(0);
 static QUERIES: AtomicI64 = AtomicI64::new(0);
+static BUFFERS: AtomicI64 = AtomicI64::new(0);
 
 /// Wraps a `glGen*`/`glDelete*` pair so that the live names are counted.
 macro_rules! counted {
@@ -52,6 +53,7 @@ mod wrappers {
     counted!(glGenSamplers, glDeleteSamplers, SAMPLERS);
     counted!(glGenVertexArrays, glDeleteVertexArrays, VERTEX_ARRAYS);
     counted!(glGenQueries, glDeleteQueries, QUERIES);
+    counted!(glGenBuffers, glDeleteBuffers, BUFFERS);
 
     pub(super) extern "system" fn glCreateProgram() -> u32 {
         PROGRAMS.fetch_add(1, Ordering::SeqCst);
@@ -119,6 +121,8 @@ mod wrappers {
             "glDeleteVertexArrays" => glDeleteVertexArrays as *const c_void,
             "glGenQueries" => glGenQueries as *const c_void,
             "glDeleteQueries" => glDeleteQueries as *const c_void,
+            "glGenBuffers" => glGenBuffers as *const c_void,
+            "glDeleteBuffers" => glDeleteBuffers as *const c_void,
             "glCreateProgram" => glCreateProgram as *const c_void,
             "glDeleteProgram" => glDeleteProgram as *const c_void,
             "glCreateShader" => glCreateShader as *const c_void,
@@ -162,7 +166,7 @@ fn forward<T>(name: &str, call: impl FnOnce(*const c_void) -> T) -> T {
 #[test]
 fn every_object_is_freed_and_the_state_put_back_also_after_an_error() {
     let live = || {
-        [&TEXTURES, &FRAMEBUFFERS, &PROGRAMS, &SHADERS, &SAMPLERS, &VERTEX_ARRAYS, &QUERIES]
+        [&TEXTURES, &FRAMEBUFFERS, &PROGRAMS, &SHADERS, &SAMPLERS, &VERTEX_ARRAYS, &QUERIES, &BUFFERS]
             .map(|counter| counter.load(Ordering::SeqCst))
     };
     // SAFETY: each wrapper calls the command that it stands for.
@@ -180,6 +184,8 @@ fn every_object_is_freed_and_the_state_put_back_also_after_an_error() {
     .unwrap();
     let before = live();
     assert!(before[4] == 2 && before[5] == 1, "the counters count: {before:?}");
+    #[cfg(feature = "render")]
+    fail_in_pictures(&gl, &live);
     {
         let density = random_map(12, 19, 4);
         let map = DensityMap::upload(&gl, &density, CountBounds::UNKNOWN).unwrap();
@@ -232,4 +238,38 @@ fn every_object_is_freed_and_the_state_put_back_also_after_an_error() {
     assert_eq!(live(), before);
     drop(gl);
     assert_eq!(live(), [0; 7]);
+}
+
+/// Whatever object of a picture fails half-way, what was made before it is freed.
+#[cfg(feature = "render")]
+fn fail_in_pictures(gl: &varikernel::Gl, live: &dyn Fn() -> [i64; 7]) {
+    use varikernel::render::Renderer;
+    use varikernel::settings::{Estimate, PictureSettings};
+
+    let alive = live();
+    let scene = varikernel::scene::Scene::shipped("cornell-glass").unwrap();
+    let photons = crate::stage::traced(&scene, 100, 1);
+    for estimate in [Estimate::Splat, Estimate::Gather { count_correction: false }] {
+        let settings = PictureSettings {
+            size: UVec2::splat(8),
+            light_samples: 1,
+            estimate,
+            ..PictureSettings::default()
+        };
+        let mut failures = 0;
+        for call in 0.. {
+            FAIL_AT.set(Some(call));
+            let result = Renderer::with_photons(gl, &scene, &settings, &photons)
+                .and_then(|mut renderer| renderer.picture(&settings).map(drop));
+            if FAIL_AT.replace(None).is_some() {
+                assert!(result.is_ok(), "{result:?}");
+                break;
+            }
+            assert!(result.is_err(), "the failure of call {call} is lost");
+            assert_eq!(live(), alive, "call {call}: {result:?}");
+            failures += 1;
+        }
+        assert!(failures >= 12, "{failures}");
+    }
+    assert_eq!(live(), alive);
 }

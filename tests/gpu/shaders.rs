@@ -85,6 +85,10 @@ fn all_sources() -> Vec<ShaderSource> {
             }
         }
     }
+    #[cfg(feature = "render")]
+    for source in varikernel::render::shader_sources() {
+        sources.insert(source.vertex() + &source.fragment(), source);
+    }
     sources.into_values().collect()
 }
 
@@ -101,9 +105,13 @@ fn every_shader_passes_glslang_validator_and_enables_no_extension() {
         std::fs::write(&file, text).unwrap();
         files.push(file);
     }
-    let vertex = folder.path().join("full_screen.vert");
-    std::fs::write(&vertex, sources[0].vertex()).unwrap();
-    files.push(vertex);
+    let vertex_stages: BTreeSet<String> = sources.iter().map(ShaderSource::vertex).collect();
+    for (number, text) in vertex_stages.iter().enumerate() {
+        assert!(text.starts_with("#version 330 core\n") && !text.contains("#extension"));
+        let file = folder.path().join(format!("{number}.vert"));
+        std::fs::write(&file, text).unwrap();
+        files.push(file);
+    }
     let validate = |files: &[std::path::PathBuf]| {
         Command::new("glslangValidator")
             .args(files)
@@ -146,6 +154,35 @@ fn every_method_runs_on_the_commands_of_3_3_core_alone() {
         let ((), sample) = varikernel::gl::time(&gl, || Ok(())).unwrap();
         assert!(sample.query.as_secs() < 60, "{sample:?}");
     }
+}
+
+#[cfg(feature = "render")]
+#[test]
+fn every_stage_of_a_picture_runs_on_the_commands_of_3_3_core_alone() {
+    use varikernel::photon::TraceSettings;
+    use varikernel::render::Renderer;
+    use varikernel::settings::{Estimate, FirstBounce, Kernel, PictureSettings, RadiusChoice};
+
+    let scene = varikernel::scene::Scene::shipped("cornell-glass").unwrap();
+    let trace = TraceSettings { photons: 500, ..TraceSettings::default() };
+    let usual =
+        PictureSettings { size: glam::UVec2::splat(24), light_samples: 1, ..PictureSettings::default() };
+    let mut pictures = Vec::new();
+    for candidate in &working_candidates() {
+        let gl = strict(candidate);
+        let maps = PictureSettings { first_bounce: FirstBounce::Maps, ..usual };
+        let mut renderer = Renderer::new(&gl, &scene, &maps, &trace, &mut |_| ()).unwrap();
+        let mut all: Vec<_> = Kernel::ALL.map(|kernel| PictureSettings { kernel, ..usual }).to_vec();
+        all.push(PictureSettings { radius: RadiusChoice::Fixed(3), ..usual });
+        all.push(PictureSettings { estimate: Estimate::Gather { count_correction: true }, ..usual });
+        for settings in all {
+            let (_, account) = renderer.picture(&settings).unwrap();
+            let keeps_energy = settings.estimate == Estimate::Splat;
+            assert!(!keeps_energy || account.energy_error() < 1e-4, "{account:?}");
+        }
+        pictures.push(renderer.picture(&usual).unwrap().0.density);
+    }
+    assert!(pictures.iter().flat_map(varikernel::Image::values).all(|&count| count >= 0.0));
 }
 
 #[test]

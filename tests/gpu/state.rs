@@ -31,8 +31,11 @@ const STATES: &[(&str, u32, usize)] = &[
     ("viewport", glow::VIEWPORT, 4),
     ("scissor box", glow::SCISSOR_BOX, 4),
     ("blend source", glow::BLEND_SRC_RGB, 1),
-    ("blend destination", glow::BLEND_DST_ALPHA, 1),
+    ("blend source of alpha", glow::BLEND_SRC_ALPHA, 1),
+    ("blend destination", glow::BLEND_DST_RGB, 1),
+    ("blend destination of alpha", glow::BLEND_DST_ALPHA, 1),
     ("blend equation", glow::BLEND_EQUATION_RGB, 1),
+    ("blend equation of alpha", glow::BLEND_EQUATION_ALPHA, 1),
     ("colour clear value", glow::COLOR_CLEAR_VALUE, 4),
     ("depth mask", glow::DEPTH_WRITEMASK, 1),
     ("depth function", glow::DEPTH_FUNC, 1),
@@ -205,8 +208,8 @@ impl Host {
             glow.active_texture(glow::TEXTURE5);
             glow.viewport(3, 5, 7, 11);
             glow.scissor(1, 2, 3, 4);
-            glow.blend_func(glow::ONE, glow::DST_COLOR);
-            glow.blend_equation(glow::FUNC_SUBTRACT);
+            glow.blend_func_separate(glow::ZERO, glow::DST_COLOR, glow::DST_ALPHA, glow::SRC_ALPHA);
+            glow.blend_equation_separate(glow::FUNC_SUBTRACT, glow::MAX);
             glow.clear_color(1.0, 0.0, 1.0, 0.0);
             glow.depth_mask(false);
             glow.depth_func(glow::NEVER);
@@ -292,6 +295,9 @@ fn check(choice: &context::DeviceChoice) {
     varikernel::gl::time(gl, || Ok(())).unwrap();
     assert_unchanged(&host, &before, "time");
 
+    #[cfg(feature = "render")]
+    check_picture(&host, &before);
+
     // Calls that fail.
     let size = UVec2::splat(gl.info().max_texture_size + 1);
     assert!(RadiusPipeline::new(gl, size, map.format(), Settings::default()).is_err());
@@ -349,6 +355,48 @@ fn follow_frames(
     maker.from_depth(depth, false).unwrap();
     maker.from_stencil(depth, 5, 0xFF).unwrap();
     assert_unchanged(host, before, "MaskMaker");
+}
+
+/// A picture under the host's state is that of an untouched context, and leaves that state alone.
+#[cfg(feature = "render")]
+fn check_picture(host: &Host, before: &[(String, Vec<i32>)]) {
+    use varikernel::measure::PictureError;
+    use varikernel::render::Renderer;
+    use varikernel::settings::{Estimate, PictureSettings, RadiusChoice};
+
+    fn beauty(gl: &Gl, settings: &PictureSettings, after: &dyn Fn(&str)) -> varikernel::Image<[f32; 3]> {
+        let scene = varikernel::scene::Scene::shipped("cornell-glass").unwrap();
+        let photons = crate::stage::traced(&scene, 500, 1);
+        let mut renderer = Renderer::with_photons(gl, &scene, settings, &photons).unwrap();
+        after("Renderer::with_photons");
+        let (layers, _) = renderer.picture(settings).unwrap();
+        after("Renderer::picture");
+        renderer.surfaces().read_albedo().unwrap();
+        after("SurfaceMaps::read_albedo");
+        layers.beauty
+    }
+
+    let usual = PictureSettings { size: UVec2::splat(20), light_samples: 1, ..PictureSettings::default() };
+    for settings in [
+        usual,
+        PictureSettings {
+            estimate: Estimate::Gather { count_correction: false },
+            radius: RadiusChoice::Fixed(2),
+            ..usual
+        },
+    ] {
+        // A context is current on its own thread alone.
+        let untouched = std::thread::spawn(move || beauty(&crate::support::egl(), &settings, &|_| ()));
+        let untouched = untouched.join().unwrap();
+        let found = beauty(&host.gl, &settings, &|call| assert_unchanged(host, before, call));
+        let error = PictureError::between(&found, &untouched);
+        assert!(error.rmse < 1e-5, "{settings:?} under the host's state: {error:?}");
+    }
+    let scene = varikernel::scene::Scene::shipped("cornell-glass").unwrap();
+    let trace = varikernel::photon::TraceSettings { photons: 300, ..Default::default() };
+    let emission = varikernel::photon::Emission::new(&scene, &trace).unwrap();
+    varikernel::render::first_hits(&host.gl, &scene, &emission).unwrap();
+    assert_unchanged(host, before, "first_hits");
 }
 
 /// The first EGL device that works.

@@ -1,0 +1,21 @@
+// Indirect light from diffuse surfaces, and the whole picture: radiance towards the camera.
+uniform sampler2D irradiance;
+uniform sampler2D albedo;
+// Radiance; a: 1 where the pixel shows a diffuse surface, 0 where it shows mirrors, glass, lights or nothing.
+uniform sampler2D direct;
+// Radiance of indirect light that is seen in mirrors and through glass.
+uniform sampler2D seen_through;
+
+layout(location = 0) out vec4 beauty;
+layout(location = 1) out vec4 indirect;
+
+void main()
+{
+    ivec2 pixel = min(ivec2(gl_FragCoord.xy), textureSize(direct, 0) - 1);
+    vec4 straight = texelFetch(direct, pixel, 0);
+    vec3 reflectance = texelFetch(albedo, pixel, 0).rgb;
+    // A diffuse surface sends its radiosity evenly into the half space.
+    vec3 reflected = straight.a * texelFetch(irradiance, pixel, 0).rgb * reflectance / 3.14159265;
+    indirect = vec4(reflected + texelFetch(seen_through, pixel, 0).rgb, 1.0);
+    beauty = vec4(straight.rgb + indirect.rgb, 1.0);
+}

@@ -1,0 +1,47 @@
+// Place, normal and albedo where the line of sight meets a sphere: exact, not as triangles. From a light, which sphere.
+uniform vec3 camera;
+uniform mat4 to_clip;
+
+in vec3 at;
+flat in vec3 centre;
+flat in vec3 reflectance;
+flat in float radius;
+flat in float number;
+
+#ifdef PRIMITIVES
+layout(location = 0) out uint primitive;
+#else
+uniform vec3 view_direction;
+
+layout(location = 0) out vec4 position;
+layout(location = 1) out vec4 normal;
+layout(location = 2) out vec4 albedo;
+#endif
+
+void main()
+{
+    vec3 sight = normalize(at - camera);
+    vec3 to_centre = centre - camera;
+    float closest = dot(to_centre, sight);
+    vec3 beside = to_centre - closest * sight;
+    float half_chord_squared = radius * radius - dot(beside, beside);
+    if (half_chord_squared < 0.0) {
+        discard;
+    }
+    float half_chord = sqrt(half_chord_squared);
+    float nearest = closest > half_chord ? closest - half_chord : closest + half_chord;
+    if (nearest <= 0.0) {
+        discard;
+    }
+    vec3 place = camera + nearest * sight;
+    vec4 clip = to_clip * vec4(place, 1.0);
+    gl_FragDepth = clip.z / clip.w * 0.5 + 0.5;
+#ifdef PRIMITIVES
+    primitive = uint(number + 0.5);
+#else
+    vec3 outward = (place - centre) / radius;
+    position = vec4(place, dot(place - camera, view_direction));
+    normal = vec4(dot(outward, sight) > 0.0 ? -outward : outward, number);
+    albedo = vec4(reflectance, 1.0);
+#endif
+}

@@ -1,0 +1,123 @@
+//! Scene and camera to what each pixel shows: place, normal and albedo of the nearest surface (thesis 2.3.2).
+//!
+//! - Triangles are rasterised with a depth test. Spheres are met exactly: a cube is rasterised around each, and the
+//!   fragments find where their line of sight meets the sphere.
+//! - Cost: one pass over the triangles and one over the spheres. Memory: 48 bytes a pixel, and 4 of depth.
+//! - Against the thesis: the place is kept, not only its depth, since photons are compared with it.
+//! - Mirrors and glass are shown as what they are, with a negative number: what is seen in them is another stage's job.
+
+use bytemuck::{Pod, Zeroable};
+use glam::{Vec3, Vec4};
+
+use crate::error::Result;
+use crate::gl::{Gl, Pass, Program, ShaderSource, StateGuard, Vertices, glsl};
+use crate::maps::SurfaceMaps;
+use crate::scene::{Scattering, Scene};
+use crate::view::View;
+
+const TRIANGLES: &str = "surfaces of triangles";
+const SPHERES: &str = "surfaces of spheres";
+
+/// A corner of a triangle.
+#[derive(Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+struct Corner {
+    position: Vec3,
+    normal: Vec3,
+    albedo: Vec3,
+    number: f32,
+}
+
+/// A corner of the cube around a sphere.
+#[derive(Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+struct CubeCorner {
+    position: Vec3,
+    centre: Vec3,
+    albedo: Vec3,
+    radius: f32,
+    number: f32,
+}
+
+/// The shaders, for any scene and view.
+#[derive(Debug)]
+pub(crate) struct SurfaceStage {
+    gl: Gl,
+    triangles: Program,
+    spheres: Program,
+}
+
+impl SurfaceStage {
+    pub(crate) fn new(gl: &Gl) -> Result<Self> {
+        let _state = StateGuard::new(gl);
+        let [triangles, spheres] = sources();
+        Ok(Self {
+            gl: gl.clone(),
+            triangles: Program::new(gl, &triangles)?,
+            spheres: Program::new(gl, &spheres)?,
+        })
+    }
+
+    /// What each pixel of the view shows.
+    pub(crate) fn draw(&self, scene: &Scene, view: View) -> Result<SurfaceMaps> {
+        let _state = StateGuard::new(&self.gl);
+        let mut maps = SurfaceMaps::new(&self.gl, view)?;
+        let triangles = Vertices::upload(&self.gl, &corners(scene), &[3, 3, 3, 1])?;
+        let spheres = Vertices::upload(&self.gl, &cubes(scene), &[3, 3, 3, 1, 1])?;
+        maps.target().clear_floats(&[Vec4::ZERO; 3]);
+        for (label, program, vertices) in
+            [(TRIANGLES, &self.triangles, &triangles), (SPHERES, &self.spheres, &spheres)]
+        {
+            Pass::new(label, program)
+                .set("to_clip", view.to_clip())
+                .set("camera", view.position())
+                .set("view_direction", view.direction())
+                .draw_triangles(vertices, maps.target())?;
+        }
+        self.gl.check("drawing the surfaces")?;
+        Ok(maps)
+    }
+}
+
+/// Number and albedo of a surface with a material.
+fn appearance(scene: &Scene, surface: u32, material: u32) -> (f32, Vec3) {
+    let material = &scene.materials()[material as usize];
+    #[expect(clippy::cast_precision_loss, reason = "fewer than 2^24 surfaces")]
+    let number = (surface + 1) as f32;
+    match material.scattering {
+        Scattering::Lambert(reflectance) => (number, reflectance),
+        Scattering::Mirror(_) | Scattering::Dielectric { .. } => (-number, Vec3::ZERO),
+    }
+}
+
+fn corners(scene: &Scene) -> Vec<Corner> {
+    let geometry = scene.geometry();
+    let of_triangle = |triangle: &crate::scene::Triangle| {
+        let places = geometry.corners(triangle);
+        let [a, b, c] = places.map(Vec3::as_dvec3);
+        let normal = (b - a).cross(c - a).normalize().as_vec3();
+        let (number, albedo) = appearance(scene, triangle.surface, triangle.material);
+        places.map(|position| Corner { position, normal, albedo, number })
+    };
+    geometry.triangles.iter().flat_map(of_triangle).collect()
+}
+
+fn cubes(scene: &Scene) -> Vec<CubeCorner> {
+    let of_sphere = |sphere: &crate::scene::Sphere| {
+        let (number, albedo) = appearance(scene, sphere.surface, sphere.material);
+        let (centre, radius) = (sphere.centre, sphere.radius);
+        sphere.cube().map(move |position| CubeCorner { position, centre, albedo, radius, number })
+    };
+    scene.geometry().spheres.iter().flat_map(of_sphere).collect()
+}
+
+pub(crate) fn sources() -> [ShaderSource; 2] {
+    [
+        ShaderSource::new(TRIANGLES)
+            .vertex_file(glsl!("surfaces/triangles.vert"))
+            .file(glsl!("surfaces/triangles.frag")),
+        ShaderSource::new(SPHERES)
+            .vertex_file(glsl!("surfaces/spheres.vert"))
+            .file(glsl!("surfaces/spheres.frag")),
+    ]
+}

@@ -1,0 +1,42 @@
+//! What light arrives at each pixel's surface.
+
+use glam::UVec2;
+
+use crate::error::Result;
+use crate::gl::{Gl, StateGuard, Target, Texture, TextureFormat};
+use crate::image::Image;
+
+/// Indirect irradiance: power per area in scene units, linear RGB, in GL_RGBA32F.
+///
+/// The fourth value is the number of kernels drawn over the pixel for a splat, of photons found for a gather.
+#[derive(Debug)]
+pub struct IrradianceMap {
+    target: Target,
+}
+
+impl IrradianceMap {
+    /// An empty map.
+    pub(crate) fn new(gl: &Gl, size: UVec2) -> Result<Self> {
+        Ok(Self { target: Target::single(gl, Texture::new(gl, TextureFormat::Rgba32Float, size, 1)?)? })
+    }
+
+    /// Reads it back; waits for the GPU.
+    ///
+    /// # Errors
+    /// [`Error::Gl`](crate::Error::Gl) if the driver fails.
+    pub fn read(&self) -> Result<Image<[f32; 4]>> {
+        let gl = self.target.texture().gl();
+        let _state = StateGuard::new(gl);
+        let image = self.target.texture().read(0);
+        gl.check("reading an irradiance map back")?;
+        Ok(image)
+    }
+
+    pub(crate) fn target(&mut self) -> &mut Target {
+        &mut self.target
+    }
+
+    pub(crate) fn texture(&self) -> &Texture {
+        self.target.texture()
+    }
+}

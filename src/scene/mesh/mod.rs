@@ -1,0 +1,161 @@
+//! Meshes by reference: OBJ and glTF 2.0.
+
+mod gltf;
+mod obj;
+
+use glam::{DVec3, Vec3};
+
+use super::fields::{MAX_COORDINATE, has_area};
+use super::source::Files;
+use super::{Geometry, Material, Scattering, Triangle, Vertex};
+
+/// What is wrong with a mesh file, and what to do about it.
+pub(super) type Problem = (String, &'static str);
+
+/// What a mesh file holds.
+pub(super) struct Mesh {
+    pub(super) parts: Vec<Part>,
+    pub(super) materials: Vec<Material>,
+}
+
+/// Triangles of one material.
+pub(super) struct Part {
+    pub(super) positions: Vec<Vec3>,
+    /// One a position, or none at all.
+    pub(super) normals: Vec<Vec3>,
+    /// Indices into the positions, inside them.
+    pub(super) triangles: Vec<[u32; 3]>,
+    /// Index into the mesh's materials.
+    pub(super) material: Option<u32>,
+}
+
+/// Reads a mesh file, by its extension.
+pub(super) fn load(files: &Files, name: &str) -> Result<Mesh, Problem> {
+    let unreadable = |problem| (problem, "paths count from the scene's folder and stay inside it");
+    let extension = name.rsplit_once('.').map_or("", |(_, extension)| extension).to_ascii_lowercase();
+    let mesh = match extension.as_str() {
+        "obj" => obj::read(&files.read(name).map_err(unreadable)?, files, name)?,
+        "gltf" | "glb" => gltf::read(&files.read(name).map_err(unreadable)?, files, name)?,
+        _ => {
+            let problem = "the extension is not that of a known mesh format".to_owned();
+            return Err((problem, "use a mesh that ends in .obj, .gltf or .glb"));
+        }
+    };
+    for part in &mesh.parts {
+        check(part)?;
+    }
+    if mesh.parts.iter().all(|part| part.triangles.is_empty()) {
+        return Err(("the mesh has no triangle".to_owned(), "export the mesh with its faces"));
+    }
+    Ok(mesh)
+}
+
+fn check(part: &Part) -> Result<(), Problem> {
+    const REMEDY: &str = "export the mesh again; every number must be finite";
+    let broken = |points: &[Vec3]| points.iter().position(|point| !point.is_finite());
+    if let Some(number) = broken(&part.positions) {
+        return Err((format!("the position of vertex {} is {}", number + 1, part.positions[number]), REMEDY));
+    }
+    if let Some(number) = broken(&part.normals) {
+        return Err((format!("the normal of vertex {} is {}", number + 1, part.normals[number]), REMEDY));
+    }
+    let vertices = part.positions.len();
+    if part.triangles.iter().flatten().any(|&vertex| vertex as usize >= vertices) {
+        return Err((format!("a face names a vertex past the last of {vertices}"), "export the mesh again"));
+    }
+    Ok(())
+}
+
+/// Adds a mesh to the geometry as one surface, without the triangles that have no area.
+///
+/// # Errors
+/// If no triangle is left, or a coordinate is too large after scaling.
+pub(super) fn add(
+    mesh: &Mesh,
+    geometry: &mut Geometry,
+    smooth: bool,
+    surface: u32,
+    material: impl Fn(Option<u32>) -> u32,
+) -> Result<(), Problem> {
+    let (mut added, mut dropped) = (0_usize, 0_usize);
+    for part in &mesh.parts {
+        if !part
+            .positions
+            .iter()
+            .all(|position| position.is_finite() && f64::from(position.abs().max_element()) <= MAX_COORDINATE)
+        {
+            return Err((format!("a coordinate is past {MAX_COORDINATE:e}"), "scale the mesh down"));
+        }
+        let material = material(part.material);
+        let corners = |triangle: &[u32; 3]| triangle.map(|vertex| part.positions[vertex as usize]);
+        let (whole, flat): (Vec<_>, Vec<_>) =
+            part.triangles.iter().partition(|triangle| has_area(&corners(triangle)));
+        (added, dropped) = (added + whole.len(), dropped + flat.len());
+        if !smooth {
+            for triangle in whole {
+                geometry.push_flat(corners(triangle), surface, material);
+            }
+            continue;
+        }
+        let first = u32::try_from(geometry.vertices.len()).expect("fewer than 2^32 vertices fit into memory");
+        let normals = smooth_normals(part, &whole);
+        let vertices = part.positions.iter().zip(normals);
+        geometry.vertices.extend(vertices.map(|(&position, normal)| Vertex { position, normal }));
+        geometry.triangles.extend(whole.into_iter().map(|triangle| Triangle {
+            vertices: triangle.map(|vertex| first + vertex),
+            surface,
+            material,
+            smooth: true,
+        }));
+    }
+    if added == 0 {
+        return Err(("no triangle of the mesh has an area".to_owned(), "export the mesh again"));
+    }
+    if dropped > 0 {
+        tracing::warn!(
+            surface = geometry.surfaces[surface as usize],
+            dropped,
+            "triangles without area are left out"
+        );
+    }
+    Ok(())
+}
+
+/// The file's normals, or else the means of the faces around each vertex, by the angle that each has there, so that it does
+/// not matter how a face is cut into triangles.
+fn smooth_normals(part: &Part, triangles: &[&[u32; 3]]) -> Vec<Vec3> {
+    let mut sums = vec![DVec3::ZERO; part.positions.len()];
+    if part.normals.is_empty() {
+        for triangle in triangles {
+            let corners = triangle.map(|vertex| part.positions[vertex as usize].as_dvec3());
+            for (number, &vertex) in triangle.iter().enumerate() {
+                let to = |step: usize| corners[(number + step) % 3] - corners[number];
+                let (next, previous) = (to(1), to(2));
+                sums[vertex as usize] += next.cross(previous).normalize() * next.angle_between(previous);
+            }
+        }
+    } else {
+        sums = part.normals.iter().map(|normal| normal.as_dvec3()).collect();
+    }
+    // A vertex without faces is never asked for its normal.
+    sums.into_iter().map(|sum| sum.normalize_or(DVec3::Y).as_vec3()).collect()
+}
+
+/// The material, if its numbers are possible.
+fn checked(material: Material) -> Result<Material, Problem> {
+    let name = &material.name;
+    let share = |colour: Vec3| (Vec3::ZERO.cmple(colour) & colour.cmple(Vec3::ONE)).all();
+    match material.scattering {
+        Scattering::Lambert(reflectance) | Scattering::Mirror(reflectance) if !share(reflectance) => {
+            Err((format!("the reflectance of material \"{name}\" is {reflectance}"), "it goes from 0 to 1"))
+        }
+        Scattering::Dielectric { index } if !(0.1..=10.0).contains(&index) => Err((
+            format!("the index of refraction of material \"{name}\" is {index}"),
+            "it goes from 0.1 to 10",
+        )),
+        _ if !(material.emission.is_finite() && material.emission.min_element() >= 0.0) => {
+            Err((format!("the emission of material \"{name}\" is {}", material.emission), "it starts at 0"))
+        }
+        _ => Ok(material),
+    }
+}

@@ -1,0 +1,156 @@
+//! From a scene file to what light meets: a camera, lights, materials, triangles and spheres, and the rays cast at them.
+//!
+//! The format of scene files is told in `assets/scenes/README.md`. Lengths are in the file's units, colours are linear RGB,
+//! coordinates are right-handed.
+
+mod build;
+mod camera;
+mod cast;
+mod fields;
+mod format;
+mod geometry;
+mod intersect;
+mod light;
+mod material;
+mod mesh;
+mod shipped;
+mod source;
+
+pub use camera::Camera;
+pub use cast::Hit;
+pub use geometry::{Geometry, Sphere, Triangle, Vertex};
+pub use intersect::{Ray, TriangleEdges, intersect_sphere};
+pub(crate) use light::cap_height;
+pub use light::{Light, LightShape, area};
+pub use material::{Material, Scattering};
+
+use std::fmt;
+use std::path::Path;
+
+use glam::{DVec3, Vec3};
+
+use crate::{Error, Result};
+use cast::Target;
+use shipped::SHIPPED;
+use source::{Files, Text};
+
+/// A scene, ready to be rasterised and for rays.
+#[derive(Clone)]
+pub struct Scene {
+    /// What it is, for people.
+    pub title: String,
+    /// The unit of length, for people: `"mm"`.
+    pub units: String,
+    /// Where the picture is taken from; it may be moved at any time.
+    pub camera: Camera,
+    lights: Vec<Light>,
+    materials: Vec<Material>,
+    geometry: Geometry,
+    target: Target,
+}
+
+impl Scene {
+    /// Reads a scene file and the meshes that it names.
+    ///
+    /// # Errors
+    /// [`Error::File`] with the line and the field: what is missing, malformed, out of range, not a number or without
+    /// area, an unknown material, a mesh that can't be read or lies outside the scene's folder.
+    pub fn load(path: &Path) -> Result<Self> {
+        let content = source::read(path)?;
+        let content = str::from_utf8(&content).map_err(|error| {
+            let problem = format!("byte {} is not text", error.valid_up_to());
+            Error::file(path, problem, "give a scene file, which is TOML in UTF-8")
+        })?;
+        let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
+        build::scene(&Text { path, content }, &Files::Folder(folder.to_owned()))
+    }
+
+    /// A scene that comes with the program, by one of [`Scene::shipped_names`].
+    ///
+    /// # Errors
+    /// If there is none of this name.
+    pub fn shipped(name: &str) -> Result<Self> {
+        let found = SHIPPED.iter().find(|shipped| shipped.name == name).ok_or_else(|| {
+            let names = Self::shipped_names().collect::<Vec<_>>().join(", ");
+            Error::file(name, "no scene of this name comes with the program", format!("use one of: {names}"))
+        })?;
+        build::scene(
+            &Text { path: Path::new(found.file), content: found.content },
+            &Files::Shipped(found.meshes),
+        )
+    }
+
+    /// Names of the scenes that come with the program.
+    pub fn shipped_names() -> impl Iterator<Item = &'static str> {
+        SHIPPED.iter().map(|shipped| shipped.name)
+    }
+
+    fn new(
+        title: String,
+        units: String,
+        camera: Camera,
+        lights: Vec<Light>,
+        materials: Vec<Material>,
+        geometry: Geometry,
+    ) -> Self {
+        let target = Target::new(&geometry);
+        Self { title, units, camera, lights, materials, geometry, target }
+    }
+
+    /// Lights, in the order of their names; surfaces that shine come last.
+    #[must_use]
+    pub fn lights(&self) -> &[Light] {
+        &self.lights
+    }
+
+    /// Materials, by [`Triangle::material`] and [`Sphere::material`].
+    #[must_use]
+    pub fn materials(&self) -> &[Material] {
+        &self.materials
+    }
+
+    /// Triangles, spheres and the names of surfaces.
+    #[must_use]
+    pub fn geometry(&self) -> &Geometry {
+        &self.geometry
+    }
+
+    /// The opposite corners of the box around all surfaces, in scene units.
+    #[must_use]
+    pub fn bounds(&self) -> (Vec3, Vec3) {
+        self.geometry.bounds()
+    }
+
+    /// The first surface that the ray meets.
+    #[must_use]
+    pub fn cast(&self, ray: &Ray) -> Option<Hit> {
+        let (distance, primitive) = self.target.nearest(ray)?;
+        Some(self.target.hit(&self.geometry, ray, distance, primitive))
+    }
+
+    /// Where the ray meets one primitive, whatever is before it.
+    #[must_use]
+    pub fn cast_at(&self, ray: &Ray, primitive: u32) -> Option<Hit> {
+        let distance = self.target.distance(ray, primitive)?;
+        Some(self.target.hit(&self.geometry, ray, distance, primitive))
+    }
+
+    /// Where a ray starts that leaves a surface at `position` on the side to which `normal` points: so close to it that
+    /// it does not pass a neighbour, and not so close that it meets the surface again.
+    #[must_use]
+    pub fn start(&self, position: DVec3, normal: DVec3) -> DVec3 {
+        self.target.start(position, normal)
+    }
+}
+
+impl fmt::Debug for Scene {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Scene")
+            .field("title", &self.title)
+            .field("camera", &self.camera)
+            .field("lights", &self.lights)
+            .field("materials", &self.materials)
+            .field("surfaces", &self.geometry.surfaces)
+            .finish_non_exhaustive()
+    }
+}
