@@ -94,9 +94,9 @@
 //! | SAT | summed-area table |
 
 mod adaptive;
-pub mod certificate;
 #[cfg(feature = "render")]
 mod bounce_map;
+pub mod certificate;
 #[cfg(any(feature = "egl", feature = "osmesa"))]
 pub mod context;
 #[cfg(feature = "render")]

@@ -123,7 +123,7 @@ impl Pass<'_> {
     /// [`Error::UnknownUniform`](crate::Error::UnknownUniform) if the program lacks a name.
     pub(crate) fn draw_triangles(self, vertices: &Vertices, target: &mut Target) -> Result<()> {
         assert!(target.depth.is_some(), "triangles hide each other by depth");
-        self.prepare(target, 0, UVec2::ZERO, |gl| {
+        self.prepare(target, 0, UVec2::ZERO, target.size(), |gl| {
             let glow = gl.glow();
             // SAFETY: the context is current, and the buffer holds that many vertices.
             unsafe {
@@ -144,7 +144,7 @@ impl Pass<'_> {
     /// # Errors
     /// [`Error::UnknownUniform`](crate::Error::UnknownUniform) if the program lacks a name.
     pub(crate) fn add_points(self, vertices: &Vertices, target: &mut Target) -> Result<()> {
-        self.prepare(target, 0, UVec2::ZERO, |gl| {
+        self.prepare(target, 0, UVec2::ZERO, target.size(), |gl| {
             // SAFETY: the context is current, and the buffer holds that many vertices.
             adding(gl, target, || unsafe {
                 gl.glow().enable(glow::PROGRAM_POINT_SIZE);
@@ -160,7 +160,7 @@ impl Pass<'_> {
     /// # Errors
     /// [`Error::UnknownUniform`](crate::Error::UnknownUniform) if the program lacks a name.
     pub(crate) fn add_quads(self, vertices: &Vertices, target: &mut Target) -> Result<()> {
-        self.prepare(target, 0, UVec2::ZERO, |gl| {
+        self.prepare(target, 0, UVec2::ZERO, target.size(), |gl| {
             // SAFETY: the context is current, and the buffer holds that many instances.
             adding(gl, target, || unsafe {
                 gl.glow().bind_vertex_array(vertices.arrays[1]);

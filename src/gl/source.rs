@@ -23,7 +23,7 @@ pub struct ShaderSource {
     defines: Vec<(&'static str, u32)>,
     /// The fragment stage.
     files: Vec<(&'static str, &'static str)>,
-    /// The vertex stage.
+    /// The vertex stage; none stands for the one triangle.
     vertex_files: Vec<(&'static str, &'static str)>,
 }
 
@@ -31,7 +31,7 @@ impl ShaderSource {
     /// An empty source; `label` names its pass in errors, debug groups and timings.
     #[must_use]
     pub(crate) fn new(label: impl Into<String>) -> Self {
-        Self { label: label.into(), defines: Vec::new(), files: Vec::new(), vertex_files: vec![FULL_SCREEN] }
+        Self { label: label.into(), defines: Vec::new(), files: Vec::new(), vertex_files: Vec::new() }
     }
 
     /// `#define name value`.
@@ -54,10 +54,10 @@ impl ShaderSource {
         self
     }
 
-    /// The vertex stage in the place of the one triangle; the defines hold for it as well.
+    /// A file of the vertex stage, which takes the place of the one triangle; the defines hold for it as well.
     #[must_use]
-    pub(crate) fn vertex_stage(mut self, files: impl Into<Vec<(&'static str, &'static str)>>) -> Self {
-        self.vertex_files = files.into();
+    pub(crate) fn vertex_file(mut self, file: (&'static str, &'static str)) -> Self {
+        self.vertex_files.push(file);
         self
     }
 
@@ -78,7 +78,11 @@ impl ShaderSource {
     /// The whole text of the vertex shader, ready for glShaderSource.
     #[must_use]
     pub fn vertex(&self) -> String {
-        self.stage(&self.vertex_files, 1 + self.files.len())
+        self.stage(self.vertex_stage(), 1 + self.files.len())
+    }
+
+    fn vertex_stage(&self) -> &[(&'static str, &'static str)] {
+        if self.vertex_files.is_empty() { &[FULL_SCREEN] } else { &self.vertex_files }
     }
 
     fn stage(&self, files: &[(&str, &str)], first_number: usize) -> String {
@@ -99,7 +103,7 @@ impl ShaderSource {
         for (name, value) in &self.defines {
             writeln!(listing, "      #define {name} {value}").expect("writing to a string");
         }
-        for (number, (name, file)) in (1..).zip(self.files.iter().chain(&self.vertex_files)) {
+        for (number, (name, file)) in (1..).zip(self.files.iter().chain(self.vertex_stage())) {
             writeln!(listing, "  file {number}: glsl/{name}").expect("writing to a string");
             for (line, text) in (1..).zip(file.lines()) {
                 writeln!(listing, "{number}:{line:<4} {text}").expect("writing to a string");

@@ -275,7 +275,7 @@ fn block_sources(
             .define("TILE_SIDE", TILE_SIDE)
             .define("WIDER_SIDE", wider_side)
             .define("WIDER_SIDE_LOG2", wider_side.ilog2())
-            .vertex_stage([glsl!("common/tiles.vert")]);
+            .vertex_file(glsl!("common/tiles.vert"));
         if class == Class::Inner {
             // One step halves the radii that are left.
             let steps = (wider_side - side + 1).next_power_of_two().ilog2();
@@ -319,7 +319,7 @@ fn pixel_sources(density: TextureFormat, settings: &Settings) -> Vec<(Class, Sha
             .define("TILE_SIDE", TILE_SIDE)
             .define("SIDE", 1_u32)
             .define("WIDER_SIDE_LOG2", FINEST_SIDE.ilog2())
-            .vertex_stage([glsl!("common/tiles.vert")]);
+            .vertex_file(glsl!("common/tiles.vert"));
         (class, source)
     };
     let classes = [Class::Unreached, Class::Dense, Class::Inner, Class::Edge].into_iter();

@@ -44,7 +44,7 @@ pub(crate) enum Structure {
     /// The density map itself.
     BruteForce(brute_force::BruteForce),
     /// A mipmap chain: summed (naive or split into blocks) or averaged by the driver.
-    Mipmap(mipmap::Mipmap),
+    Mipmap(Box<mipmap::Mipmap>),
     /// A summed-area table.
     SummedAreaTable(Box<summed_area_table::SummedAreaTable>),
 }
@@ -54,7 +54,7 @@ impl Structure {
         Ok(match settings.method {
             Method::BruteForce => Self::BruteForce(brute_force::BruteForce::default()),
             Method::NaiveMipmap | Method::AveragedMipmap | Method::Pyramid => {
-                Self::Mipmap(mipmap::Mipmap::new(gl, size, density, settings)?)
+                Self::Mipmap(Box::new(mipmap::Mipmap::new(gl, size, density, settings)?))
             }
             Method::SummedAreaTable => Self::SummedAreaTable(Box::new(
                 summed_area_table::SummedAreaTable::new(gl, size, density, settings)?,

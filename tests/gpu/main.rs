@@ -3,9 +3,9 @@
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 mod approximate;
-mod certificate;
 #[cfg(feature = "render")]
 mod bounce_map;
+mod certificate;
 #[cfg(feature = "render")]
 mod density;
 mod exactness;

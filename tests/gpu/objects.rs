@@ -237,12 +237,12 @@ fn every_object_is_freed_and_the_state_put_back_also_after_an_error() {
     }
     assert_eq!(live(), before);
     drop(gl);
-    assert_eq!(live(), [0; 7]);
+    assert_eq!(live(), [0; 8]);
 }
 
 /// Whatever object of a picture fails half-way, what was made before it is freed.
 #[cfg(feature = "render")]
-fn fail_in_pictures(gl: &varikernel::Gl, live: &dyn Fn() -> [i64; 7]) {
+fn fail_in_pictures(gl: &varikernel::Gl, live: &dyn Fn() -> [i64; 8]) {
     use varikernel::render::Renderer;
     use varikernel::settings::{Estimate, PictureSettings};
 

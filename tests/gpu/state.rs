@@ -364,7 +364,7 @@ fn check_picture(host: &Host, before: &[(String, Vec<i32>)]) {
     use varikernel::render::Renderer;
     use varikernel::settings::{Estimate, PictureSettings, RadiusChoice};
 
-    fn beauty(gl: &Gl, settings: &PictureSettings, after: &dyn Fn(&str)) -> varikernel::Image<[f32; 3]> {
+    fn beauty(gl: &Gl, settings: &PictureSettings, after: &dyn Fn(&str)) -> Image<[f32; 3]> {
         let scene = varikernel::scene::Scene::shipped("cornell-glass").unwrap();
         let photons = crate::stage::traced(&scene, 500, 1);
         let mut renderer = Renderer::with_photons(gl, &scene, settings, &photons).unwrap();

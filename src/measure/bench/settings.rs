@@ -96,7 +96,8 @@ impl BenchSettings {
                         // It has a search of its own, for which the order means nothing.
                         settings.search.order = Order::Binary;
                     }
-                    let is_possible = settings.search.order != Order::Bracketed || method == Method::SummedAreaTable;
+                    let is_possible =
+                        settings.search.order != Order::Bracketed || method == Method::SummedAreaTable;
                     if is_possible && !pipelines.contains(&settings) {
                         pipelines.push(settings);
                     }
