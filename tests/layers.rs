@@ -57,7 +57,21 @@ const ARROWS: &[(&str, &[&str])] = &[
             "view",
         ],
     ),
-    ("measure", &["exactness", "gl", "maps", "pipeline", "reference", "synth"]),
+    (
+        "measure",
+        &[
+            "certificate",
+            "exactness",
+            "frame",
+            "gl",
+            "maps",
+            "mask",
+            "pipeline",
+            "planner",
+            "reference",
+            "synth",
+        ],
+    ),
 ];
 const OPEN_TO_ALL: [&str; 3] = ["error", "image", "settings"];
 

@@ -2,6 +2,7 @@
 
 mod rivals;
 mod table;
+mod targets;
 
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -12,7 +13,7 @@ use glam::UVec2;
 use indicatif::{ProgressBar, ProgressStyle};
 use varikernel::context::{self, DeviceChoice};
 use varikernel::image::{ReadOptions, check_writable, read_counts};
-use varikernel::measure::bench::{self, BenchSettings, MapSource, Progress, Protocol, Report};
+use varikernel::measure::bench::{self, BenchSettings, FastSuite, MapSource, Progress, Protocol, Report};
 use varikernel::measure::rivals::Rival;
 use varikernel::settings::{Edges, MAX_RADIUS_LIMIT, Method, Order, SatBuild, SatSamples, Storage};
 use varikernel::synth::Kind;
@@ -26,9 +27,20 @@ use super::Outcome;
 /// texel once. A method whose answer is wrong gets no rank.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
-    /// Sizes of synthetic maps: sides, or WIDTHxHEIGHT; files have their own.
-    #[arg(long, value_delimiter = ',', default_value = "64,128,256,512", value_parser = parse_size)]
+    /// Time a fixed set of maps and cases, and judge its targets: with --sizes, --build-sizes and --rivals as the only
+    /// choices.
+    #[arg(long, value_enum, conflicts_with_all = FIXED_BY_SUITE)]
+    suite: Option<SuiteName>,
+
+    /// Sizes of synthetic maps: sides, or WIDTHxHEIGHT; files have their own [default for a suite: 1024].
+    #[arg(long, value_delimiter = ',', default_value = "64,128,256,512", value_parser = parse_size,
+          default_value_if("suite", clap::builder::ArgPredicate::IsPresent, "1024"))]
     sizes: Vec<UVec2>,
+
+    /// Sizes of a suite's maps on which builds alone are timed.
+    #[arg(long, value_delimiter = ',', default_value = "64,128,256,512,1024,2048", value_parser = parse_size,
+          requires = "suite")]
+    build_sizes: Vec<UVec2>,
 
     /// Map to time with, again for more: a kind of `varikernel synth`, or an EXR, PNG or NPY file of counts.
     #[arg(long = "map", value_name = "FILE|KIND", default_value = "caustic")]
@@ -81,7 +93,8 @@ pub(crate) struct Args {
     #[arg(long, value_enum, default_value_t = ProtocolName::Short)]
     protocol: ProtocolName,
 
-    /// Time to share out among all cases, such as 90s or 5m [default: 60s, or 10m for the thesis's protocol].
+    /// Time to share out among all cases, such as 90s or 5m [default: 60s, 3m for a suite, or 10m for the thesis's
+    /// protocol].
     #[arg(long, value_parser = humantime::parse_duration)]
     budget: Option<Duration>,
 
@@ -108,6 +121,25 @@ pub(crate) struct Args {
     compare: Option<Vec<PathBuf>>,
 }
 
+/// What a suite leaves no choice of.
+const FIXED_BY_SUITE: [&str; 9] = [
+    "maps",
+    "channel",
+    "methods",
+    "searches",
+    "max_radius",
+    "min_photons",
+    "edges",
+    "sat_build",
+    "sat_samples",
+];
+
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+enum SuiteName {
+    /// What the fast path costs, on five kinds of maps, against copies and the thesis's best.
+    Fast,
+}
+
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]
 enum ProtocolName {
     /// 5 sets of up to 100 samples.
@@ -129,7 +161,10 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     let earlier = args.resume.as_deref().map(Report::load).transpose()?;
     let settings = settings(args);
     let gl = context::open(&args.device)?;
-    let maps = maps(args, gl.info().max_texture_size)?;
+    let maps = match &settings.suite {
+        Some(suite) => suite.maps(),
+        None => maps(args, gl.info().max_texture_size)?,
+    };
     if let (Some(earlier), Some(path)) = (&earlier, &args.resume) {
         earlier.check_resumable(path, &bench::empty_report(&gl, &settings, &maps))?;
     }
@@ -143,6 +178,7 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     bar.finish_and_clear();
     saver.save(&report)?;
     table::print_report(&report, json.map(PathBuf::as_path))?;
+    targets::print(&report.targets)?;
     if !report.runs.iter().any(|run| run.case.method.is_some()) {
         bail!("no method was timed; the reasons are above");
     }
@@ -151,10 +187,18 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
 
 fn settings(args: &Args) -> BenchSettings {
     let minute = Duration::from_secs(60);
+    let short = if args.suite.is_some() { 3 * minute } else { minute };
     let protocol = match args.protocol {
-        ProtocolName::Short => Protocol::within(args.budget.unwrap_or(minute)),
+        ProtocolName::Short => Protocol::within(args.budget.unwrap_or(short)),
         ProtocolName::Thesis => Protocol::thesis(args.budget.unwrap_or(10 * minute)),
     };
+    let rivals = if args.rivals { Rival::ALL.to_vec() } else { Vec::new() };
+    if let Some(SuiteName::Fast) = args.suite {
+        let [sizes, build_sizes] =
+            [&args.sizes, &args.build_sizes].map(|sizes| sizes.iter().map(|size| size.to_array()).collect());
+        let suite = FastSuite { sizes, build_sizes };
+        return BenchSettings { rivals, ..BenchSettings::fast(suite, protocol) };
+    }
     BenchSettings {
         methods: args.methods.clone(),
         sat_builds: args.sat_build.clone(),
@@ -164,7 +208,7 @@ fn settings(args: &Args) -> BenchSettings {
         min_photons: args.min_photons.clone(),
         max_radius: args.max_radius.clone(),
         edges: args.edges.clone(),
-        rivals: if args.rivals { Rival::ALL.to_vec() } else { Vec::new() },
+        rivals,
         ..BenchSettings::new(protocol)
     }
 }

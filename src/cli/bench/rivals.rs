@@ -18,7 +18,8 @@ pub(super) fn marked(case: &Case) -> String {
 /// A line for the renderer's best exact frame among `runs`, which share map and question, and one for each rival;
 /// nothing if there are not both.
 pub(super) fn against_the_renderer(runs: &[&Run]) -> Vec<String> {
-    let right = runs.iter().filter(|run| run.case.stage == Stage::Frame && !run.is_wrong());
+    let is_whole = |case: &Case| case.stage == Stage::Frame && case.situation().is_none();
+    let right = runs.iter().filter(|run| is_whole(&run.case) && !run.is_wrong());
     let milliseconds = |run: &Run| run.statistics.median_ms;
     let exact = right.clone().filter(|run| run.case.method.is_some_and(Method::is_exact));
     let Some(best) = exact.min_by(|a, b| milliseconds(a).total_cmp(&milliseconds(b))) else {

@@ -6,7 +6,7 @@ use std::time::Duration;
 use anyhow::Result;
 use comfy_table::presets::NOTHING;
 use comfy_table::{CellAlignment, ContentArrangement, Table};
-use varikernel::measure::bench::{Case, Device, Report, Run, Stage, Verdict, compare};
+use varikernel::measure::bench::{AUTO, Case, Device, Report, Run, Stage, Verdict, compare};
 use varikernel::settings::{Edges, Order};
 
 use super::rivals;
@@ -16,6 +16,11 @@ use crate::cli::output;
 const WIDTH: u16 = 80;
 /// A quiet machine's quartiles lie closer together than this part of the median.
 const QUIET: f64 = 0.2;
+/// What the rows of situations are.
+const SITUATIONS: &str = "\
+Frames of a table by a scan: empty, empty but for what the host knows, with photons\n\
+in a quarter, unchanged, with a tile of 64 x 64 changed in the middle or at the lower\n\
+left corner, with photons added; searches with no or half of the pixels masked.";
 
 /// A run for each section (map, size, question), fastest first within each stage; what follows says what to mind.
 pub(super) fn print_report(report: &Report, json: Option<&Path>) -> Result<()> {
@@ -54,6 +59,9 @@ pub(super) fn print_report(report: &Report, json: Option<&Path>) -> Result<()> {
          quartiles in parts of the median. copies: ms over those of the copy of the same\n\
          map. answer: whether every radius is the definition's, or how many are not.",
     )?;
+    if report.runs.iter().any(|run| run.case.situation().is_some()) {
+        output::print(SITUATIONS)?;
+    }
     if report.runs.iter().any(|run| run.case.rival().is_some()) {
         output::print(rivals::LEGEND)?;
     }
@@ -69,7 +77,7 @@ fn row(run: &Run) -> [String; 8] {
     let suspect = if run.suspect.is_empty() { "" } else { "!" };
     [
         run.case.stage.name().to_owned(),
-        rivals::marked(&run.case),
+        variant(&run.case),
         order(&run.case).to_owned(),
         three_digits(all.median_ms),
         if all.count > 1 {
@@ -81,6 +89,14 @@ fn row(run: &Run) -> [String; 8] {
         format!("{suspect}{}", all.count),
         answer(run),
     ]
+}
+
+/// Of a situation, its name alone: the variant is the same for all.
+fn variant(case: &Case) -> String {
+    match case.situation() {
+        Some(_) => case.variant.trim_start_matches("sat-scan-").to_owned(),
+        None => rivals::marked(case),
+    }
 }
 
 fn answer(run: &Run) -> String {
@@ -212,14 +228,14 @@ fn device_facts(device: &Device) -> Vec<(&'static str, String)> {
     ]
 }
 
-fn new_table(header: &[&str]) -> Table {
+pub(super) fn new_table(header: &[&str]) -> Table {
     let mut table = Table::new();
     table.load_style(NOTHING).set_content_arrangement(ContentArrangement::Dynamic).set_width(WIDTH);
     table.set_header(header);
     table
 }
 
-fn align_right(table: &mut Table, columns: std::ops::RangeInclusive<usize>) {
+pub(super) fn align_right(table: &mut Table, columns: std::ops::RangeInclusive<usize>) {
     for index in columns {
         if let Some(column) = table.column_mut(index) {
             column.set_cell_alignment(CellAlignment::Right);
@@ -263,7 +279,8 @@ pub(super) fn order(case: &Case) -> &'static str {
         (Some(Order::Forward), _) => "forward",
         (Some(Order::Binary), _) => "binary",
         (Some(Order::Bracketed), _) => "bracketed",
-        (None, Stage::Copy | Stage::Probe | Stage::Build) => "",
+        (None, Stage::Copy | Stage::Probe | Stage::Build | Stage::Certify) => "",
+        (None, Stage::Frame) if case.variant == AUTO => "planned",
         (None, Stage::Search | Stage::Frame) => "its own",
     }
 }

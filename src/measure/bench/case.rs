@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::rival;
 use super::settings::{BenchSettings, MapInfo};
+use super::situation::Situation;
 use crate::measure::Unit;
 use crate::measure::rivals::Rival;
 use crate::settings::{Edges, Method, Order, SatBuild, SatSamples, Search, Settings, Storage};
@@ -24,6 +25,8 @@ pub enum Stage {
     Search,
     /// Both: what a frame needs.
     Frame,
+    /// The proof of radii that are there.
+    Certify,
 }
 
 impl Stage {
@@ -36,9 +39,13 @@ impl Stage {
             Self::Build => "build",
             Self::Search => "search",
             Self::Frame => "frame",
+            Self::Certify => "certify",
         }
     }
 }
+
+/// The variant of frames that the [`planner`](crate::planner) chooses.
+pub const AUTO: &str = "auto";
 
 /// What tells a row from all others of a run; what has no effect on a stage is absent.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -47,13 +54,14 @@ pub struct Case {
     pub stage: Stage,
     /// The method and, where it counts, how its structure is built: `brute-force`, `naive-mipmap`,
     /// `averaged-mipmap`, `pyramid`, `sat` (search), `sat-doubling-4` or `sat-scan` (build and frame), `copy`, `probe`;
-    /// or a [`Rival`]'s name. A table that is kept in another number than the run's base says so: `sat-scan-u16`.
+    /// [`AUTO`]; or the name of a [`Rival`] or a [`Situation`]. A table that is kept in another number than the run's
+    /// base says so: `sat-scan-u16`.
     pub variant: String,
     /// The map's name.
     pub map: String,
     /// The map's columns and rows.
     pub size: [u32; 2],
-    /// The method; none for a unit and a rival.
+    /// The method; none for a unit, a rival, and where the planner chooses.
     pub method: Option<Method>,
     /// Samples a pass in which the summed-area table is built, if it is built by doubling.
     pub sat_samples: Option<SatSamples>,
@@ -68,7 +76,7 @@ pub struct Case {
 }
 
 impl Case {
-    fn unit(unit: Unit, map: &MapInfo) -> Self {
+    pub(super) fn unit(unit: Unit, map: &MapInfo) -> Self {
         let stage = match unit {
             Unit::Copy => Stage::Copy,
             Unit::Probe => Stage::Probe,
@@ -87,7 +95,23 @@ impl Case {
         }
     }
 
-    fn of(stage: Stage, settings: &Settings, base: Storage, map: &MapInfo) -> Self {
+    /// A frame of whatever the planner chooses for the map.
+    pub(super) fn planned(search: Search, map: &MapInfo) -> Self {
+        Self {
+            stage: Stage::Frame,
+            variant: AUTO.to_owned(),
+            map: map.name.clone(),
+            size: map.size,
+            method: None,
+            sat_samples: None,
+            search: None,
+            min_photons: Some(search.min_photons),
+            max_radius: Some(search.max_radius),
+            edges: Some(search.edges),
+        }
+    }
+
+    pub(super) fn of(stage: Stage, settings: &Settings, base: Storage, map: &MapInfo) -> Self {
         let Settings { search, method, .. } = *settings;
         let is_table = method == Method::SummedAreaTable;
         let builds = is_table && stage != Stage::Search;
@@ -125,7 +149,7 @@ impl fmt::Display for Case {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [width, height] = self.size;
         write!(formatter, "{}", self.stage.name())?;
-        if self.method.is_some() || self.rival().is_some() {
+        if self.variant != self.stage.name() {
             write!(formatter, " {}", self.variant)?;
         }
         if let Some(order) = self.search {
@@ -169,11 +193,17 @@ fn storage_suffix(storage: Storage) -> &'static str {
 pub(super) enum Work {
     Unit(Unit),
     Pipeline(Settings),
+    /// The frame of what the planner makes of the settings.
+    Planned(Settings),
+    Situation(Situation, Settings),
     Rival(Rival, Search),
 }
 
 /// Every case of a map, units first and rivals last. A brute-force search is its whole frame, so only the frame is a case.
 pub(super) fn cases(settings: &BenchSettings, map: &MapInfo) -> Vec<(Case, Work)> {
+    if let Some(suite) = &settings.suite {
+        return suite.cases(settings, map);
+    }
     let mut cases: Vec<(Case, Work)> =
         [Unit::Copy, Unit::Probe].map(|unit| (Case::unit(unit, map), Work::Unit(unit))).into();
     for stage in [Stage::Build, Stage::Search, Stage::Frame] {

@@ -9,19 +9,28 @@
 //! starts with one untimed run. The time that is left is shared out anew before each set: slow cases get few samples,
 //! but every case gets one, as long as the budget lasts.
 //!
+//! A [suite](FastSuite) is a fixed set of maps and cases with [targets](Target) for their ratios.
+//!
 //! [Rivals](super::rivals) on the processor are cases like the others, at the stage of a whole frame.
 
 mod case;
 mod compare;
+mod fast;
 mod files;
 mod report;
 mod rival;
 mod runner;
+mod scene;
 mod settings;
+mod situation;
+mod target;
 mod workbench;
 
-pub use case::{Case, Stage};
+pub use case::{AUTO, Case, Stage};
 pub use compare::{ComparedRun, Comparison, Verdict, compare};
+pub use fast::FastSuite;
 pub use report::{Device, LeftOut, Report, Run};
 pub use runner::{Progress, empty_report, run};
 pub use settings::{BenchSettings, MapInfo, MapSource, Protocol};
+pub use situation::Situation;
+pub use target::{Side, Target};

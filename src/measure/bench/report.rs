@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::case::{Case, Stage};
 use super::settings::{BenchSettings, MapInfo};
+use super::target::Target;
 use crate::error::{Error, Result};
 use crate::gl::{DeviceInfo, Sample};
 use crate::measure::Statistics;
@@ -76,6 +77,12 @@ pub struct Run {
     pub suspect: Vec<usize>,
     /// Pixels whose radius is not that of the definition; for a unit, texels that are not as expected.
     pub wrong_pixels: u64,
+    /// The mean of the definition's radii, which decides what a search costs; absent where none was asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mean_radius: Option<f64>,
+    /// What the planner chose and why, for a frame of its choice.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub planned: Option<String>,
 }
 
 impl Run {
@@ -92,6 +99,8 @@ impl Run {
             copies: None,
             suspect: Vec::new(),
             wrong_pixels: 0,
+            mean_radius: None,
+            planned: None,
         };
         run.add_set(set, software);
         Some(run)
@@ -158,6 +167,9 @@ pub struct Report {
     pub runs: Vec<Run>,
     /// What was not timed.
     pub left_out: Vec<LeftOut>,
+    /// What a suite was meant to reach; none without a suite.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub targets: Vec<Target>,
 }
 
 impl Report {
@@ -175,15 +187,21 @@ impl Report {
             .find(|run| run.case.stage == Stage::Copy && run.case.map == map && run.case.size == size)
     }
 
-    /// Runs of one stage of a map, fastest first; wrong answers are not among them.
+    /// Runs of one stage of a map, fastest first; wrong answers and [situations](super::Situation) are not among them.
     #[must_use]
     pub fn ranking(&self, stage: Stage, map: &str, size: [u32; 2]) -> Vec<&Run> {
         let mut runs: Vec<&Run> = self.runs.iter().collect();
         runs.retain(|run| {
-            run.case.stage == stage && run.case.map == map && run.case.size == size && !run.is_wrong()
+            let of_map = run.case.stage == stage && run.case.map == map && run.case.size == size;
+            of_map && !run.is_wrong() && run.case.situation().is_none()
         });
         runs.sort_by(|a, b| a.statistics.median_ms.total_cmp(&b.statistics.median_ms));
         runs
+    }
+
+    /// Judges the suite's targets anew, if a suite was run.
+    pub fn update_targets(&mut self) {
+        self.targets = self.settings.suite.as_ref().map_or_else(Vec::new, |suite| suite.targets(self));
     }
 
     /// Recomputes each run's time in copies.

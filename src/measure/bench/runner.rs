@@ -51,13 +51,17 @@ pub fn run(
     let mut runner =
         Runner { gl, settings, report, timer: Timer::new(gl)?, start, budget, sets, sets_done: 0, observe };
     for (index, map) in maps.iter().enumerate() {
-        // A map's share grows with its side: its samples cost as much as it has pixels, and small maps need no
-        // more of them than large ones.
-        let weight = |map: &MapSource| map.size().as_dvec2().element_product().sqrt();
+        // A map's share grows with its cases and its side: its samples cost as much as it has pixels, and small maps
+        // need no more of them than large ones.
+        let weight = |map: &MapSource| {
+            let cases = u32::try_from(case::cases(settings, &map.info).len()).unwrap_or(u32::MAX);
+            f64::from(cases) * map.size().as_dvec2().element_product().sqrt()
+        };
         let share = weight(map) / maps[index..].iter().map(weight).sum::<f64>();
         let left = budget.saturating_sub(start.elapsed());
         runner.time_map(map, start.elapsed() + left.mul_f64(share))?;
     }
+    runner.report.update_targets();
     Ok(runner.report)
 }
 
@@ -72,12 +76,16 @@ pub fn empty_report(gl: &Gl, settings: &BenchSettings, maps: &[MapSource]) -> Re
         maps: maps.iter().map(|map| map.info.clone()).collect(),
         runs: Vec::new(),
         left_out: Vec::new(),
+        targets: Vec::new(),
     }
 }
 
 /// FNV-1a, 64 bits, of every shader.
 fn shader_hash(settings: &BenchSettings) -> String {
-    let pipelines = settings.pipelines();
+    let pipelines = match &settings.suite {
+        Some(suite) => suite.pipelines(settings),
+        None => settings.pipelines(),
+    };
     let timed = pipelines.iter().flat_map(|of| pipeline::shader_sources(TextureFormat::R32Uint, of));
     let mut hash = 0xcbf2_9ce4_8422_2325_u64;
     for source in Unit::ALL.map(Unit::source).into_iter().chain(timed) {
@@ -176,6 +184,7 @@ impl Runner<'_> {
         let time = Duration::from_secs_f64(turn.credit.max(0.0));
         let set = bench.take_set(&mut self.timer, (stage, work), limit, time)?;
         let wrong_pixels = bench.wrong_pixels(stage, work)?;
+        let (mean_radius, planned) = (bench.mean_radius(stage, work), bench.planned(work));
         turn.cost = set.last().map_or(0.0, |sample| sample.wall.as_secs_f64());
         turn.credit -= start.elapsed().as_secs_f64();
 
@@ -186,8 +195,10 @@ impl Runner<'_> {
         }
         if let Some(run) = self.report.runs.iter_mut().find(|run| run.case == turn.case) {
             run.wrong_pixels = run.wrong_pixels.max(wrong_pixels);
+            (run.mean_radius, run.planned) = (mean_radius, planned);
         }
         self.report.update_copies();
+        self.report.update_targets();
         Ok(())
     }
 

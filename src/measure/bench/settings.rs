@@ -6,6 +6,7 @@ use std::time::Duration;
 use glam::UVec2;
 use serde::{Deserialize, Serialize};
 
+use super::fast::FastSuite;
 use crate::image::Image;
 use crate::measure::rivals::Rival;
 use crate::settings::{Edges, Method, Order, SatBuild, SatSamples, Search, Settings, Storage};
@@ -58,6 +59,9 @@ pub struct BenchSettings {
     /// Rivals on the processor, timed beside the methods.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub rivals: Vec<Rival>,
+    /// A suite, which times a part of what is listed above and more.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub suite: Option<FastSuite>,
     /// Everything else: storage, split, matching, faults. What is listed above is taken from there.
     pub base: Settings,
     /// How often.
@@ -79,6 +83,7 @@ impl BenchSettings {
             max_radius: vec![base.search.max_radius],
             edges: vec![base.search.edges],
             rivals: Vec::new(),
+            suite: None,
             base,
             protocol,
         }

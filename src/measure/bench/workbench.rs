@@ -2,9 +2,11 @@
 
 use std::time::{Duration, Instant};
 
-use super::case::{Stage, Work};
+use super::case::{Stage, Work, order_name};
 use super::rival::{self, Rivals};
+use super::scene::Scene;
 use super::settings::{BenchSettings, MapSource};
+use super::situation::Situation;
 use crate::error::{Error, Result};
 use crate::exactness::CountBounds;
 use crate::gl::{Gl, Sample, Timer};
@@ -12,8 +14,9 @@ use crate::image::Image;
 use crate::maps::DensityMap;
 use crate::measure::{Difference, Unit, UnitPass};
 use crate::pipeline::RadiusPipeline;
+use crate::planner::{self, Census, Choice};
 use crate::reference;
-use crate::settings::{Search, Settings, Storage};
+use crate::settings::{Order, Search, Settings, Storage};
 
 /// A map on the device, and all that was made for it.
 pub(super) struct Workbench {
@@ -22,7 +25,11 @@ pub(super) struct Workbench {
     density: DensityMap,
     units: Vec<(Unit, UnitPass)>,
     pipelines: Vec<RadiusPipeline>,
+    /// What the planner chose for which settings.
+    choices: Vec<(Settings, Choice)>,
+    scenes: Vec<(Situation, Scene)>,
     rivals: Rivals,
+    /// The definition's radii.
     answers: Vec<(Search, Image<u32>)>,
 }
 
@@ -47,6 +54,8 @@ impl Workbench {
             density,
             units: Vec::new(),
             pipelines: Vec::new(),
+            choices: Vec::new(),
+            scenes: Vec::new(),
             rivals: Rivals::default(),
             answers: Vec::new(),
         })
@@ -61,14 +70,33 @@ impl Workbench {
                     self.units.push((unit, UnitPass::new(&self.gl, unit, size)?));
                 }
             }
-            Work::Pipeline(settings) => {
-                if !self.pipelines.iter().any(|known| *known.settings() == settings) {
-                    let pipeline = RadiusPipeline::new(&self.gl, size, self.density.format(), settings)?;
-                    pipeline.plan(&self.density)?;
-                    self.pipelines.push(pipeline);
+            Work::Pipeline(settings) => self.prepare_pipeline(settings)?,
+            Work::Planned(settings) => {
+                if !self.choices.iter().any(|(known, _)| *known == settings) {
+                    let census = Census::of(&self.counts);
+                    let choice = planner::choose(&settings, size, Some(&census), self.density.bounds());
+                    self.choices.push((settings, choice));
+                }
+                self.prepare_pipeline(self.choice(settings).settings)?;
+            }
+            Work::Situation(situation, settings) => {
+                self.prepare_pipeline(settings)?;
+                if !self.scenes.iter().any(|(known, _)| *known == situation) {
+                    let scene = Scene::new(&self.gl, situation, settings.search, &self.counts)?;
+                    self.scenes.push((situation, scene));
                 }
             }
             Work::Rival(rival, search) => self.rivals.prepare(rival, search, size)?,
+        }
+        Ok(())
+    }
+
+    fn prepare_pipeline(&mut self, settings: Settings) -> Result<()> {
+        if !self.pipelines.iter().any(|known| *known.settings() == settings) {
+            let size = self.counts.size();
+            let pipeline = RadiusPipeline::new(&self.gl, size, self.density.format(), settings)?;
+            pipeline.plan(&self.density)?;
+            self.pipelines.push(pipeline);
         }
         Ok(())
     }
@@ -86,17 +114,31 @@ impl Workbench {
         }
         let start = Instant::now();
         let mut set = Vec::new();
-        if stage == Stage::Search {
-            self.run_once(work, Stage::Build)?;
+        match work {
+            Work::Situation(situation, settings) => {
+                let pipeline = find(&mut self.pipelines, settings);
+                find_scene(&mut self.scenes, situation).begin_set(pipeline)?;
+            }
+            _ if stage == Stage::Search => self.run_once(work, Stage::Build)?,
+            _ => (),
         }
+        self.begin_sample(work)?;
         self.run_once(work, stage)?;
         loop {
+            self.begin_sample(work)?;
             let ((), sample) = timer.time(|| self.run_once(work, stage))?;
             set.push(sample);
             if set.len() >= limit || start.elapsed() + sample.wall > time {
                 return Ok(set);
             }
         }
+    }
+
+    /// What comes before each sample, not timed.
+    fn begin_sample(&mut self, work: Work) -> Result<()> {
+        let Work::Situation(situation, settings) = work else { return Ok(()) };
+        let pipeline = find(&mut self.pipelines, settings);
+        find_scene(&mut self.scenes, situation).begin_sample(pipeline, &self.density)
     }
 
     fn run_once(&mut self, work: Work, stage: Stage) -> Result<()> {
@@ -110,8 +152,12 @@ impl Workbench {
                 match stage {
                     Stage::Build => pipeline.build(&self.density),
                     Stage::Search => pipeline.search(&self.density).map(drop),
-                    Stage::Copy | Stage::Probe | Stage::Frame => pipeline.render(&self.density).map(drop),
+                    _ => pipeline.render(&self.density).map(drop),
                 }
+            }
+            Work::Planned(settings) => self.run_once(Work::Pipeline(self.choice(settings).settings), stage),
+            Work::Situation(situation, settings) => {
+                find_scene(&mut self.scenes, situation).run(find(&mut self.pipelines, settings))
             }
             Work::Rival(rival, search) => {
                 self.rivals.run(rival, search, &self.counts);
@@ -136,6 +182,12 @@ impl Workbench {
                 };
                 Ok(Difference::between(&found, self.answer(settings.search))?.wrong_pixels)
             }
+            Work::Planned(settings) => {
+                self.wrong_pixels(stage, Work::Pipeline(self.choice(settings).settings))
+            }
+            Work::Situation(situation, settings) => {
+                find_scene(&mut self.scenes, situation).wrong_pixels(find(&mut self.pipelines, settings))
+            }
             Work::Rival(rival, search) => {
                 let answer = self.answer(search).clone();
                 self.rivals.wrong_pixels(rival, search, &answer)
@@ -143,8 +195,32 @@ impl Workbench {
         }
     }
 
-    /// The definition's radii.
+    /// The mean of the definition's radii, where a search of the map itself was timed.
+    pub(super) fn mean_radius(&mut self, stage: Stage, work: Work) -> Option<f64> {
+        let search = match work {
+            Work::Pipeline(settings) | Work::Planned(settings) if stage != Stage::Build => settings.search,
+            Work::Rival(_, search) => search,
+            _ => return None,
+        };
+        let radii = self.answer(search);
+        let size = radii.size().as_dvec2();
+        Some(radii.values().iter().map(|&radius| f64::from(radius)).sum::<f64>() / size.element_product())
+    }
+
+    /// What the planner chose, and why.
+    pub(super) fn planned(&self, work: Work) -> Option<String> {
+        let Work::Planned(settings) = work else { return None };
+        let Choice { settings, reason } = self.choice(settings);
+        Some(format!("{}: {reason}", order_name(settings.search.order)))
+    }
+
+    fn choice(&self, settings: Settings) -> &Choice {
+        &self.choices.iter().find(|(known, _)| *known == settings).expect("prepared").1
+    }
+
+    /// The definition's radii, which no order changes.
     fn answer(&mut self, search: Search) -> &Image<u32> {
+        let search = Search { order: Order::Binary, ..search };
         let index = self.answers.iter().position(|(known, _)| *known == search).unwrap_or_else(|| {
             let radius = reference::radius_by_table(&self.counts, search).radius;
             self.answers.push((search, radius));
@@ -156,4 +232,8 @@ impl Workbench {
 
 fn find(pipelines: &mut [RadiusPipeline], settings: Settings) -> &mut RadiusPipeline {
     pipelines.iter_mut().find(|known| *known.settings() == settings).expect("prepared")
+}
+
+fn find_scene(scenes: &mut [(Situation, Scene)], situation: Situation) -> &mut Scene {
+    &mut scenes.iter_mut().find(|(known, _)| *known == situation).expect("prepared").1
 }

@@ -60,6 +60,7 @@ impl Part {
             max_radius: self.max_radius.clone(),
             edges: vec![Edges::Scale],
             rivals: Vec::new(),
+            suite: None,
             base: Settings::thesis(),
             protocol,
         }
