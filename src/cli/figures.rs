@@ -85,7 +85,7 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     fs::create_dir_all(&args.output)
         .with_context(|| format!("can't make the folder {}", args.output.display()))?;
     check_writable(&args.output.join("figures.png"))?;
-    let tone_map = source.tone_map()?;
+    source.check_exposure()?;
     let (settings, trace) = (source.picture(), source.trace());
     settings.validate().and_then(|()| trace.validate()).map_err(in_words_of_options)?;
     let scene = load(&source.scene)?;
@@ -93,6 +93,9 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
 
     let bar = Bar::new();
     let halves = references(args, &gl, &scene, &bar).map_err(in_words_of_options)?;
+    let beauty = mean(&halves[0].beauty, &halves[1].beauty);
+    // All pictures are as bright as suits the reference.
+    let tone_map = source.tone_map(&beauty);
     let indirect = mean(&halves[0].indirect, &halves[1].indirect);
     let apart = PictureError::between(&halves[0].indirect, &halves[1].indirect);
     let reference_noise = PictureError { rmse: apart.rmse / 2.0, relative_mse: apart.relative_mse / 4.0 };
@@ -129,7 +132,7 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     }
     bar.finish();
     let caption = vec![format!("Reference, {} seeds", args.reference_seeds), errors(reference_noise)];
-    tiles.push(Tile { picture: tone_map.apply(&mean(&halves[0].beauty, &halves[1].beauty)), caption });
+    tiles.push(Tile { picture: tone_map.apply(&beauty), caption });
     write_colours(&args.output.join("figures.png"), &contact_sheet(&tiles, 3))?;
     let report = Report {
         version: env!("CARGO_PKG_VERSION"),

@@ -14,7 +14,7 @@ use varikernel::photon::TraceSettings;
 use varikernel::render::{Account, Layers, Progress, Reference, Renderer};
 use varikernel::scene::Scene;
 use varikernel::settings::{Estimate, FirstBounce, Kernel, PictureSettings, RadiusChoice};
-use varikernel::{Error, Gl};
+use varikernel::{Error, Gl, Image};
 
 use super::photons::{load, parse_count};
 use super::synth::parse_size;
@@ -101,9 +101,9 @@ pub(super) struct Source {
     #[arg(long, default_value_t = 16, value_name = "NUMBER")]
     pub(super) light_samples: u32,
 
-    /// Brightness of a PNG, in stops: each doubles the light.
-    #[arg(long, default_value_t = 2.0, value_name = "STOPS", allow_negative_numbers = true)]
-    pub(super) exposure: f32,
+    /// Brightness of a PNG, in stops: each doubles the light [default: what suits the picture].
+    #[arg(long, value_name = "STOPS", allow_negative_numbers = true)]
+    pub(super) exposure: Option<f32>,
 
     /// OpenGL device: auto, egl, egl:INDEX, osmesa, or part of a renderer's name.
     #[arg(long, default_value_t = DeviceChoice::Auto)]
@@ -128,11 +128,19 @@ impl Source {
         }
     }
 
-    pub(super) fn tone_map(&self) -> Result<ToneMap> {
-        if !self.exposure.is_finite() {
-            bail!("--exposure {} is not possible: give a number of stops", self.exposure);
+    /// Refuses an exposure that is no number.
+    pub(super) fn check_exposure(&self) -> Result<()> {
+        match self.exposure {
+            Some(exposure) if !exposure.is_finite() => {
+                bail!("--exposure {exposure} is not possible: give a number of stops")
+            }
+            _ => Ok(()),
         }
-        Ok(ToneMap { exposure: self.exposure, ..ToneMap::default() })
+    }
+
+    pub(super) fn tone_map(&self, picture: &Image<[f32; 3]>) -> ToneMap {
+        let fitting = ToneMap::fitting(picture);
+        ToneMap { exposure: self.exposure.unwrap_or(fitting.exposure), ..fitting }
     }
 }
 
@@ -152,7 +160,7 @@ struct Report<'a> {
 
 pub(crate) fn run(args: &Args) -> Result<Outcome> {
     check_output(&args.output)?;
-    let tone_map = args.source.tone_map()?;
+    args.source.check_exposure()?;
     let trace = args.source.trace();
     let settings = PictureSettings {
         radius: args.radius,
@@ -179,7 +187,7 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     bar.show(Progress { stage: "picture", done: 0.0 });
     let (layers, account) = renderer.picture(&settings)?;
     bar.finish();
-    write(&args.output, &layers, tone_map, &attributes(args, &scene.title))?;
+    write(args, &layers, &attributes(args, &scene.title))?;
     let report = Report {
         version: env!("CARGO_PKG_VERSION"),
         scene: &scene.title,
@@ -210,7 +218,7 @@ fn render_reference(
     if seeds == 0 {
         bail!("--reference 0 is not possible: a mean takes at least 1 seed");
     }
-    let (trace, tone_map) = (args.source.trace(), args.source.tone_map()?);
+    let trace = args.source.trace();
     let bar = Bar::new();
     let mut reference = Reference::new(gl, scene, settings, &mut |progress| bar.show(progress))?;
     let mut saved = Instant::now();
@@ -224,7 +232,7 @@ fn render_reference(
         };
         reference.add_seed(scene, &trace, &mut show).map_err(in_words_of_options)?;
         if seed + 1 == seeds || saved.elapsed() > SAVE_EVERY {
-            write(&args.output, &reference.picture()?, tone_map, &attributes)?;
+            write(args, &reference.picture()?, &attributes)?;
             saved = Instant::now();
         }
     }
@@ -289,9 +297,10 @@ impl Bar {
     }
 }
 
-fn write(path: &Path, layers: &Layers, tone_map: ToneMap, attributes: &[Attribute]) -> Result<()> {
+fn write(args: &Args, layers: &Layers, attributes: &[Attribute]) -> Result<()> {
+    let path = &args.output;
     if Format::of(path)? == Format::Png {
-        return Ok(write_colours(path, &tone_map.apply(&layers.beauty))?);
+        return Ok(write_colours(path, &args.source.tone_map(&layers.beauty).apply(&layers.beauty))?);
     }
     let (rgb, xyz) = (['R', 'G', 'B'], ['X', 'Y', 'Z']);
     #[expect(clippy::cast_precision_loss, reason = "radii are at most 96")]

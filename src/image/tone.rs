@@ -23,18 +23,37 @@ impl Default for ToneMap {
 }
 
 impl ToneMap {
+    /// The usual one with the exposure that brings the logarithmic mean luminance of an image's lit pixels to one half, as
+    /// equations 1 and 2 of the same paper do; 2 stops where nothing is lit.
+    #[must_use]
+    pub fn fitting(image: &Image<[f32; 3]>) -> Self {
+        let lit = image.values().iter().map(|&colour| luminance(colour)).filter(|&luminance| luminance > 0.0);
+        let (count, sum) = lit
+            .fold((0.0_f64, 0.0), |(count, sum), luminance| (count + 1.0, sum + f64::from(luminance).log2()));
+        if count == 0.0 {
+            return Self::default();
+        }
+        #[expect(clippy::cast_possible_truncation, reason = "a logarithm of an f32")]
+        let exposure = (-1.0 - sum / count) as f32;
+        Self { exposure, ..Self::default() }
+    }
+
     /// The colours of an image of linear RGB radiance.
     #[must_use]
     pub fn apply(&self, image: &Image<[f32; 3]>) -> Image<[u8; 3]> {
         let scale = self.exposure.exp2();
         image.map(|colour| {
-            let [red, green, blue] = colour.map(|value| value.max(0.0) * scale);
-            // Of ITU-R BT.709, whose primaries sRGB has.
-            let luminance = 0.2126 * red + 0.7152 * green + 0.0722 * blue;
+            let colour = colour.map(|value| value.max(0.0) * scale);
+            let luminance = luminance(colour);
             let factor = (1.0 + luminance / (self.white * self.white)) / (1.0 + luminance);
-            [red, green, blue].map(|value| encode(value * factor))
+            colour.map(|value| encode(value * factor))
         })
     }
+}
+
+/// Luminance by ITU-R BT.709, whose primaries sRGB has.
+fn luminance([red, green, blue]: [f32; 3]) -> f32 {
+    0.2126 * red + 0.7152 * green + 0.0722 * blue
 }
 
 /// The sRGB transfer function (IEC 61966-2-1), to 8 bits.
@@ -59,5 +78,9 @@ mod tests {
         assert_eq!(tone.apply(&image).at(0, 0), [255; 3]);
         let black = Image::filled(glam::UVec2::ONE, [0.0; 3]);
         assert_eq!(tone.apply(&black).at(0, 0), [0; 3]);
+        assert_eq!(ToneMap::fitting(&black), ToneMap::default());
+        // A mean of 1/8 takes 2 stops to one half; what is not lit does not count.
+        let mixed = Image::from_values(glam::UVec2::new(3, 1), vec![[0.25; 3], [0.0; 3], [0.0625; 3]]);
+        assert!((ToneMap::fitting(&mixed).exposure - 2.0).abs() < 1e-5);
     }
 }

@@ -373,7 +373,8 @@ impl Traced {
                     let (photons, tally) = trace_from_hits(scene, trace, &hits);
                     keep(&photons, &mut points)?;
                     landings += tally.total();
-                    followed += u32::try_from(hits.len()).expect("a part of the photons");
+                    followed +=
+                        u32::try_from(hits.len()).unwrap_or_else(|_| unreachable!("a part of the photons"));
                     show(followed);
                 }
                 landings
@@ -495,13 +496,11 @@ fn rgb([red, green, blue, _]: [f32; 4]) -> [f32; 3] {
 ///
 /// # Errors
 /// [`Error::Shader`](crate::Error::Shader); [`Error::Gl`](crate::Error::Gl) if the driver fails.
-///
-/// # Panics
-/// Never: there are as many as photons, which are counted in u32.
 pub fn first_hits(gl: &Gl, scene: &Scene, emission: &Emission<'_>) -> Result<Vec<FirstHit>> {
     let mut maps = BounceMaps::new(gl, scene)?;
-    let mut all = Vec::new();
-    while let Some(hits) = maps.next_hits(emission, u32::try_from(all.len()).expect("as many as photons"))? {
+    let (mut all, mut followed) = (Vec::new(), 0);
+    while let Some(hits) = maps.next_hits(emission, followed)? {
+        followed += u32::try_from(hits.len()).unwrap_or_else(|_| unreachable!("a part of the photons"));
         all.extend(hits);
     }
     Ok(all)
