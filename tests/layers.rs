@@ -21,12 +21,21 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("synth", &[]),
     ("exactness", &["reference"]),
     ("maps", &["exactness", "gl"]),
-    ("structure", &["exactness", "gl", "maps"]),
+    ("frame", &["maps"]),
+    ("planner", &["exactness"]),
+    ("structure", &["exactness", "frame", "gl", "maps"]),
     ("driver_limits", &["gl", "structure"]),
-    ("radius", &["exactness", "gl", "maps", "structure"]),
+    ("radius", &["exactness", "frame", "gl", "maps", "structure"]),
     ("certificate", &["exactness", "gl", "maps", "structure"]),
-    ("pipeline", &["certificate", "exactness", "gl", "driver_limits", "maps", "radius", "structure"]),
-    ("measure", &["exactness", "gl", "maps", "pipeline", "reference", "synth"]),
+    (
+        "pipeline",
+        &["certificate", "driver_limits", "exactness", "frame", "gl", "maps", "radius", "structure"],
+    ),
+    ("adaptive", &["exactness", "frame", "gl", "maps", "pipeline", "planner", "structure"]),
+    (
+        "measure",
+        &["certificate", "exactness", "frame", "gl", "maps", "pipeline", "planner", "reference", "synth"],
+    ),
 ];
 const OPEN_TO_ALL: [&str; 3] = ["error", "image", "settings"];
 

@@ -94,7 +94,7 @@ impl BenchSettings {
                     let mut settings = Settings { search, method, sat_build, sat_samples, ..self.base };
                     if method == Method::NaiveMipmap {
                         // It has a search of its own, for which the order means nothing.
-                        settings.search.order = self.base.search.order;
+                        settings.search.order = Settings::of(method).search.order;
                     }
                     let is_possible = search.order != Order::Bracketed || method == Method::SummedAreaTable;
                     if is_possible && !pipelines.contains(&settings) {

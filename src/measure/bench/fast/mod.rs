@@ -101,7 +101,9 @@ impl FastSuite {
             return cases;
         }
         for radius in MAX_RADII {
-            cases.extend([Order::Forward, Order::Binary].map(|order| rows.search(order, radius, Edges::Scale)));
+            cases.extend(
+                [Order::Forward, Order::Binary].map(|order| rows.search(order, radius, Edges::Scale)),
+            );
         }
         for edges in [Edges::Scale, Edges::Zero] {
             cases.extend(MORE_RADII.map(|radius| rows.search(Order::Bracketed, radius, edges)));

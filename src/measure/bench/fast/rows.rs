@@ -1,9 +1,9 @@
 //! The rows of a map: what a case is called and what it runs, in one place for the run and for its targets.
 
+use crate::measure::Unit;
 use crate::measure::bench::case::{Case, Stage, Work};
 use crate::measure::bench::settings::MapInfo;
 use crate::measure::bench::situation::Situation;
-use crate::measure::Unit;
 use crate::settings::{Edges, Order, SatBuild, SatSamples, Search, Settings};
 
 /// All orders of a search in a table.
