@@ -5,6 +5,7 @@
 mod program;
 mod rivals;
 mod runs;
+mod suite;
 mod timer;
 
 use varikernel::Gl;

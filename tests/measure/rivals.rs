@@ -12,7 +12,7 @@ use varikernel::Image;
 use varikernel::measure::bench::{self, BenchSettings, MapSource, Protocol, Report, Stage};
 use varikernel::measure::rivals::{Contender, Rival};
 use varikernel::reference::{self, Radii};
-use varikernel::settings::{Edges, Method, Order, SatSamples, Search};
+use varikernel::settings::{Edges, Method, Order, SatBuild, SatSamples, Search};
 use varikernel::synth::{self, Kind};
 
 fn search(min_photons: u32, max_radius: u32, edges: Edges) -> Search {
@@ -108,7 +108,9 @@ proptest! {
 fn rivals_are_timed_beside_the_methods() {
     let settings = BenchSettings {
         methods: vec![Method::SummedAreaTable],
+        sat_builds: vec![SatBuild::Doubling],
         sat_samples: vec![SatSamples::Four],
+        searches: vec![Order::Forward, Order::Binary],
         edges: vec![Edges::Zero, Edges::Scale],
         rivals: Rival::ALL.to_vec(),
         ..BenchSettings::new(Protocol { sets: 3, iterations: 2, budget_s: 60.0 })
@@ -169,6 +171,10 @@ fn bench(option: &str, file: &Path) -> assert_cmd::assert::Assert {
             "sat",
             "--sat-samples",
             "4",
+            "--sat-build",
+            "doubling",
+            "--searches",
+            "forward,binary",
         ])
         .args(["--edges", "zero", "--budget", "30s", option])
         .arg(file)

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use glam::UVec2;
 use varikernel::measure::bench::{self, BenchSettings, MapSource, Protocol, Report, Stage};
-use varikernel::settings::{Faults, Method, Order, SatSamples};
+use varikernel::settings::{Faults, Method, Order, SatBuild, SatSamples};
 use varikernel::synth::Kind;
 
 const SIZE: [u32; 2] = [48, 40];
@@ -13,7 +13,9 @@ const SIZE: [u32; 2] = [48, 40];
 fn settings() -> BenchSettings {
     BenchSettings {
         methods: vec![Method::BruteForce, Method::SummedAreaTable],
+        sat_builds: vec![SatBuild::Doubling],
         sat_samples: vec![SatSamples::Four],
+        searches: vec![Order::Forward, Order::Binary],
         ..BenchSettings::new(Protocol { sets: 4, iterations: 3, budget_s: 60.0 })
     }
 }

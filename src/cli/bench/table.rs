@@ -18,9 +18,10 @@ const WIDTH: u16 = 80;
 const QUIET: f64 = 0.2;
 /// What the rows of situations are.
 const SITUATIONS: &str = "\
-Frames of a table by a scan: empty, empty but for what the host knows, with photons\n\
-in a quarter, unchanged, with a tile of 64 x 64 changed in the middle or at the lower\n\
-left corner, with photons added; searches with no or half of the pixels masked.";
+empty to added: frames of a table by a scan, without photons (as the host knows,\n\
+or unknown to it), with those of a quarter, unchanged, after an edit of 64 x 64\n\
+pixels in the middle or the lower left corner, with photons in addition;\n\
+none-masked, half-masked: searches with a mask.";
 
 /// A run for each section (map, size, question), fastest first within each stage; what follows says what to mind.
 pub(super) fn print_report(report: &Report, json: Option<&Path>) -> Result<()> {

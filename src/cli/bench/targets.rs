@@ -6,26 +6,30 @@ use varikernel::measure::bench::Target;
 use super::table::{align_right, new_table, three_digits};
 use crate::cli::output;
 
-/// A row for each target; nothing without any.
+/// A table for each kind of target; nothing without any.
 pub(super) fn print(targets: &[Target]) -> Result<()> {
     if targets.is_empty() {
         return Ok(());
     }
-    let mut table = new_table(&["target", "what", "measured", "bound", "verdict"]);
-    align_right(&mut table, 2..=3);
-    for target in targets {
-        table.add_row([
-            target.name.clone(),
-            target.what.clone(),
-            target.measured.map_or_else(String::new, three_digits),
-            format!("{} {} {}", target.side, target.bound, target.unit),
-            verdict(target).to_owned(),
-        ]);
+    output::print("\ntargets, as ratios of the medians above")?;
+    for kind in targets.chunk_by(|a, b| a.name == b.name) {
+        let mut table = new_table(&["", "measured", "bound", "map", ""]);
+        align_right(&mut table, 1..=2);
+        for target in kind {
+            table.add_row([
+                verdict(target).to_owned(),
+                target.measured.map_or_else(String::new, three_digits),
+                format!("{} {}", target.side, target.bound),
+                map(target),
+                target.question.clone(),
+            ]);
+        }
+        let Target { name, what, unit, .. } = &kind[0];
+        output::print(&format!("\n{name}, in {unit}:\n{what}"))?;
+        output::print(&table.trim_fmt())?;
     }
-    output::print("\ntargets: ratios of the medians above")?;
-    output::print(&table.trim_fmt())?;
     let count = |wanted| targets.iter().filter(|target| verdict(target) == wanted).count();
-    let mut summary = format!("{} of {} targets hold, {} FAIL", count(HOLDS), targets.len(), count(FAILS));
+    let mut summary = format!("\n{} of {} targets hold, {} FAIL", count(HOLDS), targets.len(), count(FAILS));
     if count(NOT_MEASURED) > 0 {
         summary += &format!(", {} were not measured", count(NOT_MEASURED));
     }
@@ -34,7 +38,7 @@ pub(super) fn print(targets: &[Target]) -> Result<()> {
 
 const HOLDS: &str = "holds";
 const FAILS: &str = "FAILS";
-const NOT_MEASURED: &str = "no measure";
+const NOT_MEASURED: &str = "not measured";
 
 fn verdict(target: &Target) -> &'static str {
     match target.measured {
@@ -42,4 +46,9 @@ fn verdict(target: &Target) -> &'static str {
         Some(_) if target.holds => HOLDS,
         Some(_) => FAILS,
     }
+}
+
+fn map(target: &Target) -> String {
+    let [width, height] = target.size;
+    format!("{} {width} x {height}", target.map)
 }

@@ -99,7 +99,7 @@ impl BenchSettings {
                         Settings { search, method, sat_build, sat_samples, storage, ..self.base };
                     if method == Method::NaiveMipmap {
                         // It has a search of its own, for which the order means nothing.
-                        settings.search.order = Order::Binary;
+                        settings.search.order = Settings::of(method).search.order;
                     }
                     let is_possible =
                         settings.search.order != Order::Bracketed || method == Method::SummedAreaTable;

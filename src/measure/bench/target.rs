@@ -4,6 +4,8 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
+use super::settings::MapInfo;
+
 /// Which side of its bound a target wants to be on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -26,13 +28,22 @@ impl fmt::Display for Side {
     }
 }
 
+/// The side, the bound and its unit.
+pub(super) type Bound = (Side, f64, &'static str);
+
 /// A ratio of medians of one run, and what it should be.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Target {
     /// Which kind of target; several maps and questions may have one of the same name.
     pub name: String,
-    /// What was measured: the rows, their map and question.
+    /// What was measured, and against what.
     pub what: String,
+    /// The map's name.
+    pub map: String,
+    /// The map's columns and rows.
+    pub size: [u32; 2],
+    /// What else tells it from others of that name: MR, edges, the place of an edit.
+    pub question: String,
     /// The ratio; none if a row that it needs is missing or wrong.
     pub measured: Option<f64>,
     /// Which side of the bound is meant.
@@ -46,21 +57,31 @@ pub struct Target {
 }
 
 impl Target {
-    /// A target of `side` and `bound`, judged.
-    #[must_use]
-    pub fn new(
-        name: &str,
-        what: String,
+    /// A target, judged.
+    pub(super) fn new(
+        (name, what): (&str, &str),
+        map: &MapInfo,
+        question: String,
         measured: Option<f64>,
-        (side, bound): (Side, f64),
-        unit: &str,
+        (side, bound, unit): Bound,
     ) -> Self {
         let holds = measured.is_some_and(|measured| match side {
             Side::AtMost => measured <= bound,
             Side::Below => measured < bound,
             Side::AtLeast => measured >= bound,
         });
-        Self { name: name.to_owned(), what, measured, side, bound, unit: unit.to_owned(), holds }
+        Self {
+            name: name.to_owned(),
+            what: what.to_owned(),
+            map: map.name.clone(),
+            size: map.size,
+            question,
+            measured,
+            side,
+            bound,
+            unit: unit.to_owned(),
+            holds,
+        }
     }
 }
 
@@ -70,7 +91,10 @@ mod tests {
 
     #[test]
     fn a_bound_is_met_on_its_side_and_by_nothing_unmeasured() {
-        let holds = |measured, side| Target::new("t", String::new(), measured, (side, 2.0), "copies").holds;
+        let map = MapInfo { name: "m".to_owned(), size: [4, 4], origin: String::new() };
+        let holds = |measured, side| {
+            Target::new(("t", ""), &map, String::new(), measured, (side, 2.0, "copies")).holds
+        };
         let sides = [Side::AtMost, Side::Below, Side::AtLeast];
         assert_eq!(sides.map(|side| holds(Some(1.9), side)), [true, true, false]);
         assert_eq!(sides.map(|side| holds(Some(2.0), side)), [true, false, true]);

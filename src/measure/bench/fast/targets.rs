@@ -9,7 +9,7 @@ use crate::measure::Unit;
 use crate::measure::bench::case::{Case, Work, edges_name};
 use crate::measure::bench::report::{Report, Run};
 use crate::measure::bench::situation::Situation;
-use crate::measure::bench::target::{Side, Target};
+use crate::measure::bench::target::{Bound, Side, Target};
 use crate::settings::{Edges, Order};
 
 /// Sides from which on a build is told in copies, as far as which it is compared with doubling, and at which both.
@@ -27,7 +27,8 @@ const AS_LONG: &str = "times as long";
 pub(super) fn of<'a>(suite: &FastSuite, report: &'a Report) -> Vec<Target> {
     let judge = |map| Judge { report, rows: Rows { map, base: report.settings.base } };
     let maps: Vec<Judge<'_>> = report.maps.iter().map(judge).collect();
-    let builds = maps.iter().filter(|judge| judge.rows.map.name == CAUSTIC).flat_map(Judge::builds);
+    let mut targets: Vec<Target> = maps.iter().flat_map(Judge::builds).collect();
+    targets.sort_by(|a, b| a.name.cmp(&b.name));
     let kinds: [fn(&Judge<'a>) -> Vec<Target>; 6] = [
         Judge::bracketed_in_probes,
         Judge::bracketed_by_max_radius,
@@ -37,8 +38,11 @@ pub(super) fn of<'a>(suite: &FastSuite, report: &'a Report) -> Vec<Target> {
         Judge::against_the_thesis,
     ];
     let whole: Vec<_> = maps.iter().filter(|judge| suite.sizes.contains(&judge.rows.map.size)).collect();
-    builds.chain(kinds.iter().flat_map(|kind| whole.iter().flat_map(|judge| kind(judge)))).collect()
+    targets.extend(kinds.iter().flat_map(|kind| whole.iter().flat_map(|judge| kind(judge))));
+    targets
 }
+
+type Row = (Case, Work);
 
 /// The rows of a map, to be held against each other.
 #[derive(Clone, Copy)]
@@ -47,54 +51,53 @@ struct Judge<'a> {
     rows: Rows<'a>,
 }
 
-type Row = (Case, Work);
-
 impl Judge<'_> {
     fn builds(&self) -> Vec<Target> {
+        if self.rows.map.name != CAUSTIC {
+            return Vec::new();
+        }
         let [two, four, scan] = self.rows.builds();
         let side = self.rows.map.size.into_iter().max().unwrap_or(0);
         let doubling = self.best(&[two, four]);
+        let scan = self.time(&scan);
+        let against = "a table by a scan, against the better doubling";
         let mut targets = Vec::new();
         if side >= LARGE {
-            let copies = ratio(self.time(&scan), self.unit(Unit::Copy));
-            let what = self.on_map("build of the table by a scan");
-            targets.push(Target::new("build", what, copies, (Side::AtMost, 3.5), COPIES));
+            let (kind, bound) = (("build", "a table by a scan"), (Side::AtMost, 3.5, COPIES));
+            targets.push(self.target(kind, "", ratio(scan, self.unit(Unit::Copy)), bound));
         }
         if side == LARGE {
-            let gain = ratio(doubling, self.time(&scan));
-            let what = self.on_map("build by a scan, against the better doubling");
-            targets.push(Target::new("build-gain", what, gain, (Side::AtLeast, 5.0), AS_FAST));
+            let bound = (Side::AtLeast, 5.0, AS_FAST);
+            targets.push(self.target(("build-gain", against), "", ratio(doubling, scan), bound));
         }
         if side <= SMALL {
-            let against = ratio(self.time(&scan), doubling);
-            let what = self.on_map("build by a scan, against the better doubling");
-            targets.push(Target::new("build-small", what, against, (Side::AtMost, 1.0), AS_LONG));
+            let bound = (Side::AtMost, 1.0, AS_LONG);
+            targets.push(self.target(("build-small", against), "", ratio(scan, doubling), bound));
         }
         targets
     }
 
     /// The slowest of its questions.
     fn bracketed_in_probes(&self) -> Vec<Target> {
-        let questions =
-            [Edges::Scale, Edges::Zero].into_iter().flat_map(|edges| MORE_RADII.map(|of| (of, edges)));
+        let all_radii = |edges| MORE_RADII.map(|of| (of, edges));
+        let questions = [Edges::Scale, Edges::Zero].into_iter().flat_map(all_radii);
         let times = questions.map(|(radius, edges)| {
             let time = self.time(&self.rows.search(Order::Bracketed, radius, edges))?;
-            Some((time, format!("slowest bracketed search, MR {radius} {}", edges_name(edges))))
+            Some((time, format!("MR {radius}, edges {}", edges_name(edges))))
         });
         let slowest = times.collect::<Option<Vec<_>>>().and_then(|times| {
             times.into_iter().reduce(|slowest, next| if next.0 > slowest.0 { next } else { slowest })
         });
-        let (time, what) =
-            slowest.map_or((None, "slowest bracketed search".to_owned()), |(time, what)| (Some(time), what));
+        let (time, question) = slowest.unzip();
         let probes = ratio(time, self.unit(Unit::Probe));
-        vec![Target::new("bracketed", self.on_map(&what), probes, (Side::AtMost, 3.0), PROBES)]
+        let kind = ("bracketed", "a bracketed search, the slowest of all MR and edges");
+        vec![self.target(kind, &question.unwrap_or_default(), probes, (Side::AtMost, 3.0, PROBES))]
     }
 
     fn bracketed_by_max_radius(&self) -> Vec<Target> {
         let search = |radius| self.time(&self.rows.search(Order::Bracketed, radius, Edges::Scale));
-        let what = self.on_map("bracketed search, MR 512 against MR 32");
-        let bound = (Side::AtMost, 1.1);
-        vec![Target::new("bracketed-mr", what, ratio(search(512), search(32)), bound, AS_LONG)]
+        let kind = ("bracketed-mr", "a bracketed search, MR 512 against MR 32");
+        vec![self.target(kind, "", ratio(search(512), search(32)), (Side::AtMost, 1.1, AS_LONG))]
     }
 
     fn bracketed_against_others(&self) -> Vec<Target> {
@@ -104,14 +107,14 @@ impl Judge<'_> {
             let mean = self.run(&bracketed).and_then(|run| run.mean_radius);
             // Without a mean, nothing was measured either.
             let bound = match mean {
-                Some(mean) if mean > LONG => (Side::Below, 1.0),
-                _ => (Side::AtMost, 1.1),
+                Some(mean) if mean > LONG => (Side::Below, 1.0, AS_LONG),
+                _ => (Side::AtMost, 1.1, AS_LONG),
             };
             let mean = mean.map_or_else(String::new, |mean| format!(", mean radius {mean:.1}"));
-            let what = format!("bracketed search, against the better other, MR {radius}{mean}");
             let best = self.best(&[search(Order::Forward), search(Order::Binary)]);
             let measured = ratio(self.time(&bracketed), best);
-            Target::new("bracketed-rank", self.on_map(&what), measured, bound, AS_LONG)
+            let kind = ("bracketed-rank", "a bracketed search, against the better of forward and binary");
+            self.target(kind, &format!("MR {radius}{mean}"), measured, bound)
         };
         MAX_RADII.map(against).into()
     }
@@ -121,8 +124,8 @@ impl Judge<'_> {
             let mut fixed = self.rows.thesis_frames(radius);
             fixed.extend(self.rows.scan_frames(radius));
             let measured = ratio(self.time(&self.rows.planned(radius)), self.best(&fixed));
-            let what = self.on_map(&format!("frame planned, against the best fixed one, MR {radius}"));
-            Target::new("auto", what, measured, (Side::AtMost, 1.1), AS_LONG)
+            let kind = ("auto", "a planned frame, against the best fixed one");
+            self.target(kind, &format!("MR {radius}"), measured, (Side::AtMost, 1.1, AS_LONG))
         };
         MAX_RADII.map(against).into()
     }
@@ -132,41 +135,28 @@ impl Judge<'_> {
             return Vec::new();
         }
         let time = |situation| self.time(&self.rows.situation(situation));
-        let [.., whole] = self.rows.scan_frames(SITUATION_RADIUS).map(|row| self.time(&row));
+        let [.., frame] = self.rows.scan_frames(SITUATION_RADIUS).map(|row| self.time(&row));
         let search = self.time(&self.rows.search(Order::Bracketed, SITUATION_RADIUS, Edges::Scale));
         let (copy, probe) = (self.unit(Unit::Copy), self.unit(Unit::Probe));
-        let of_frame = "of a whole frame";
-        let judged = |name, what, situation, against, bound, unit| {
-            let measured = ratio(time(situation), against);
-            Target::new(name, self.on_map(what), measured, (Side::AtMost, bound), unit)
+        let judged = |kind, question, situation, against, (bound, unit)| {
+            self.target(kind, question, ratio(time(situation), against), (Side::AtMost, bound, unit))
         };
-        let half =
-            |against, what| judged("half-masked", what, Situation::HalfMasked, against, 0.6, "of the search");
-        let (known, unknown) = ("frame known to be empty", "frame empty, at most 1 photon known");
+        let empty = ("empty", "a frame without photons");
+        let quarter = ("quarter", "a frame with photons in a quarter, against all");
+        let masked = ("half-masked", "a search with half of the pixels masked, against all");
+        let unchanged = ("unchanged", "a frame in which nothing changed");
+        let tile = ("tile", "a frame after an edit of 64 x 64 pixels, against a whole one");
+        let part = |bound| (bound, AS_LONG);
         vec![
-            judged("empty", known, Situation::Empty, copy, 1.5, COPIES),
-            judged("empty", unknown, Situation::EmptyUnknown, copy, 1.5, COPIES),
-            judged("quarter", "frame with photons in a quarter", Situation::Quarter, whole, 0.6, of_frame),
-            half(time(Situation::NoneMasked), "search half masked, against a mask of all"),
-            half(search, "search half masked, against no mask"),
-            judged("unchanged", "frame unchanged", Situation::Unchanged, copy, 0.1, COPIES),
-            judged(
-                "tile",
-                "frame with a tile changed in the middle",
-                Situation::TileChanged,
-                whole,
-                0.3,
-                of_frame,
-            ),
-            judged(
-                "tile",
-                "frame with a tile changed at the lower left",
-                Situation::CornerChanged,
-                whole,
-                0.3,
-                of_frame,
-            ),
-            judged("certify", "proof", Situation::Certify, probe, 2.5, PROBES),
+            judged(empty, "known to be empty", Situation::Empty, copy, (1.5, COPIES)),
+            judged(empty, "known to have 1 at most", Situation::EmptyUnknown, copy, (1.5, COPIES)),
+            judged(quarter, "", Situation::Quarter, frame, part(0.6)),
+            judged(masked, "a mask of all", Situation::HalfMasked, time(Situation::NoneMasked), part(0.6)),
+            judged(masked, "without a mask", Situation::HalfMasked, search, part(0.6)),
+            judged(unchanged, "", Situation::Unchanged, copy, (0.1, COPIES)),
+            judged(tile, "in the middle", Situation::TileChanged, frame, part(0.3)),
+            judged(tile, "at the lower left", Situation::CornerChanged, frame, part(0.3)),
+            judged(("certify", "a proof of radii and table"), "", Situation::Certify, probe, (2.5, PROBES)),
         ]
     }
 
@@ -174,12 +164,16 @@ impl Judge<'_> {
         let gain = |radius, least| {
             let thesis = self.best(&self.rows.thesis_frames(radius));
             let measured = ratio(thesis, self.time(&self.rows.planned(radius)));
-            let what = self.on_map(&format!("frame planned, against the thesis's best, MR {radius}"));
-            Target::new("frame", what, measured, (Side::AtLeast, least), AS_FAST)
+            let kind = ("frame", "a planned frame, against the thesis's best");
+            self.target(kind, &format!("MR {radius}"), measured, (Side::AtLeast, least, AS_FAST))
         };
         let is_sparse = [SPARSE, MOSTLY_EMPTY].contains(&self.rows.map.name.as_str());
         let [short, long] = MAX_RADII;
         vec![gain(short, 3.0), gain(long, if is_sparse { 4.5 } else { 3.0 })]
+    }
+
+    fn target(&self, kind: (&str, &str), question: &str, measured: Option<f64>, bound: Bound) -> Target {
+        Target::new(kind, self.rows.map, question.to_owned(), measured, bound)
     }
 
     fn unit(&self, unit: Unit) -> Option<f64> {
@@ -198,11 +192,6 @@ impl Judge<'_> {
 
     fn run(&self, (case, _): &Row) -> Option<&Run> {
         self.report.run(case).filter(|run| !run.is_wrong())
-    }
-
-    fn on_map(&self, what: &str) -> String {
-        let [width, height] = self.rows.map.size;
-        format!("{what}: {} {width} x {height}", self.rows.map.name)
     }
 }
 
