@@ -23,7 +23,7 @@ impl Default for ToneMap {
 }
 
 impl ToneMap {
-    /// The usual one with the exposure that brings the logarithmic mean luminance of an image's lit pixels to one half, as
+    /// The usual one with the exposure that brings the logarithmic mean luminance of an image's lit pixels to one third, as
     /// equations 1 and 2 of the same paper do; 2 stops where nothing is lit.
     #[must_use]
     pub fn fitting(image: &Image<[f32; 3]>) -> Self {
@@ -34,7 +34,7 @@ impl ToneMap {
             return Self::default();
         }
         #[expect(clippy::cast_possible_truncation, reason = "a logarithm of an f32")]
-        let exposure = (-1.0 - sum / count) as f32;
+        let exposure = -(3.0_f64.log2() + sum / count) as f32;
         Self { exposure, ..Self::default() }
     }
 
@@ -79,8 +79,8 @@ mod tests {
         let black = Image::filled(glam::UVec2::ONE, [0.0; 3]);
         assert_eq!(tone.apply(&black).at(0, 0), [0; 3]);
         assert_eq!(ToneMap::fitting(&black), ToneMap::default());
-        // A mean of 1/8 takes 2 stops to one half; what is not lit does not count.
+        // A mean of 1/8 takes log2(8/3) stops to one third; what is not lit does not count.
         let mixed = Image::from_values(glam::UVec2::new(3, 1), vec![[0.25; 3], [0.0; 3], [0.0625; 3]]);
-        assert!((ToneMap::fitting(&mixed).exposure - 2.0).abs() < 1e-5);
+        assert!((ToneMap::fitting(&mixed).exposure - 1.415_037).abs() < 1e-5);
     }
 }
