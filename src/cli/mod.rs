@@ -50,6 +50,7 @@ enum Verb {
     Render(render::Args),
     Figures(figures::Args),
     Radius(radius::Args),
+    // Boxed: it has by far the most options.
     Bench(Box<bench::Args>),
     Reproduce(reproduce::Args),
     Compare(compare::Args),
