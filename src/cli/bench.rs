@@ -191,7 +191,7 @@ fn settings(args: &Args) -> BenchSettings {
     let rivals = if args.rivals { Rival::ALL.to_vec() } else { Vec::new() };
     if let Some(SuiteName::Fast) = args.suite {
         let [sizes, build_sizes] =
-            [&args.sizes, &args.build_sizes].map(|sizes| sizes.iter().map(|size| size.to_array()).collect());
+            [&args.sizes, &args.build_sizes].map(|sizes| sizes.iter().map(UVec2::to_array).collect());
         let suite = FastSuite { sizes, build_sizes };
         return BenchSettings { rivals, ..BenchSettings::fast(suite, protocol) };
     }

@@ -43,7 +43,8 @@ pub(crate) struct Cli {
 #[derive(Debug, Subcommand)]
 enum Verb {
     Radius(radius::Args),
-    Bench(bench::Args),
+    // Boxed: it has by far the most options.
+    Bench(Box<bench::Args>),
     Reproduce(reproduce::Args),
     Compare(compare::Args),
     Synth(synth::Args),

@@ -7,7 +7,7 @@ use predicates::str::contains;
 use varikernel::measure::bench::{
     self, AUTO, BenchSettings, FastSuite, Protocol, Report, Run, Side, Situation, Stage, Target,
 };
-use varikernel::settings::{Edges, Order};
+use varikernel::settings::{Edges, Faults, Order};
 
 const SIZE: [u32; 2] = [96, 80];
 const MAPS: [&str; 5] = ["uniform-sparse", "uniform-dense", "caustic", "step", "mostly-empty"];
@@ -60,6 +60,21 @@ fn every_row_is_there_with_the_right_answer() {
     }
     let ranked = report.ranking(Stage::Frame, "caustic", SIZE);
     assert!(ranked.len() == 16, "situations are not ranked");
+}
+
+#[test]
+fn a_planted_fault_is_seen_in_every_frame_that_counts() {
+    let mut settings = settings();
+    settings.base.faults = Faults { border_test: true, ..Faults::NONE };
+    settings.base.search.order = Order::Binary;
+    let maps = settings.suite.as_ref().unwrap().maps();
+    let caustic = maps.into_iter().find(|map| map.info.name == "caustic" && map.info.size == SIZE).unwrap();
+    let report = bench::run(&crate::egl(), &settings, &[caustic], None, &mut |_, _| Ok(())).unwrap();
+    let counted = report.runs.iter().filter(|run| !matches!(run.case.stage, Stage::Copy | Stage::Probe));
+    assert!(counted.clone().count() > 0 && counted.clone().all(Run::is_wrong));
+    let refused = report.left_out.iter().filter(|left_out| left_out.case.situation().is_some());
+    assert_eq!(refused.count(), Situation::ALL.len(), "a bracketed search runs without faults alone");
+    assert!(report.targets.iter().all(|target| target.measured.is_none() && !target.holds));
 }
 
 #[test]
@@ -127,7 +142,7 @@ fn milliseconds(run: &Run) -> f64 {
         (Stage::Search, "sat-scan-none-masked", _) => 44.0,
         (Stage::Search, "sat-scan-half-masked", _) => 24.0,
         (Stage::Search, _, Some(Order::Bracketed)) if case.edges == Some(Edges::Zero) => 48.0,
-        (Stage::Search, _, Some(Order::Bracketed)) => 40.0,
+        (Stage::Search, _, Some(Order::Bracketed)) | (Stage::Certify, ..) => 40.0,
         (Stage::Search, _, Some(Order::Binary)) => 41.0,
         (Stage::Search, ..) => 100.0,
         (Stage::Frame, AUTO, _) => 64.0,
@@ -140,7 +155,6 @@ fn milliseconds(run: &Run) -> f64 {
         (Stage::Frame, "sat-doubling-4", Some(Order::Binary)) if is_long => 64.0 * 4.5,
         (Stage::Frame, "sat-doubling-4", Some(Order::Binary)) => 64.0 * 3.0,
         (Stage::Frame, ..) => 500.0,
-        (Stage::Certify, ..) => 40.0,
     }
 }
 

@@ -29,11 +29,12 @@ pub(super) fn print(targets: &[Target]) -> Result<()> {
         output::print(&table.trim_fmt())?;
     }
     let count = |wanted| targets.iter().filter(|target| verdict(target) == wanted).count();
-    let mut summary = format!("\n{} of {} targets hold, {} FAIL", count(HOLDS), targets.len(), count(FAILS));
-    if count(NOT_MEASURED) > 0 {
-        summary += &format!(", {} were not measured", count(NOT_MEASURED));
-    }
-    output::print(&summary)
+    let missing = match count(NOT_MEASURED) {
+        0 => String::new(),
+        missing => format!(", {missing} were not measured"),
+    };
+    let (hold, fail) = (count(HOLDS), count(FAILS));
+    output::print(&format!("\n{hold} of {} targets hold, {fail} FAIL{missing}", targets.len()))
 }
 
 const HOLDS: &str = "holds";

@@ -3,6 +3,7 @@
 use std::time::{Duration, Instant};
 
 use super::case::{self, Case, Work};
+use super::fast;
 use super::report::{Device, LeftOut, Report, Run};
 use super::settings::{BenchSettings, MapSource};
 use super::workbench::Workbench;
@@ -82,10 +83,7 @@ pub fn empty_report(gl: &Gl, settings: &BenchSettings, maps: &[MapSource]) -> Re
 
 /// FNV-1a, 64 bits, of every shader.
 fn shader_hash(settings: &BenchSettings) -> String {
-    let pipelines = match &settings.suite {
-        Some(suite) => suite.pipelines(settings),
-        None => settings.pipelines(),
-    };
+    let pipelines = if settings.suite.is_some() { fast::pipelines(settings) } else { settings.pipelines() };
     let timed = pipelines.iter().flat_map(|of| pipeline::shader_sources(TextureFormat::R32Uint, of));
     let mut hash = 0xcbf2_9ce4_8422_2325_u64;
     for source in Unit::ALL.map(Unit::source).into_iter().chain(timed) {

@@ -116,33 +116,33 @@ impl FastSuite {
         if map.name == CAUSTIC {
             cases.extend(Situation::ALL.map(|situation| rows.situation(situation)));
         }
-        cases.extend(self.rivals(settings, map));
+        cases.extend(rivals(settings, map));
         cases
-    }
-
-    /// The scanlines at the questions of the frames; the tree, which knows zero edges only, at one.
-    fn rivals(&self, settings: &BenchSettings, map: &MapInfo) -> Vec<(Case, Work)> {
-        let asked = |rivals: Vec<Rival>, radii: &[u32], edges| {
-            let (max_radius, edges) = (radii.to_vec(), vec![edges]);
-            rival::cases(&BenchSettings { rivals, max_radius, edges, ..settings.clone() }, map)
-        };
-        let (trees, others) = settings.rivals.iter().partition(|rival| **rival == Rival::Kiddo);
-        let mut cases = asked(others, &MAX_RADII, Edges::Scale);
-        cases.extend(asked(trees, &[SITUATION_RADIUS], Edges::Zero));
-        cases
-    }
-
-    /// Every pipeline whose shaders are timed.
-    pub(super) fn pipelines(&self, settings: &BenchSettings) -> Vec<Settings> {
-        let mut pipelines = settings.pipelines();
-        pipelines.push(Settings { masked: true, ..settings.base });
-        pipelines
     }
 
     /// The targets of a run of this suite, judged.
     pub(super) fn targets(&self, report: &Report) -> Vec<Target> {
         targets::of(self, report)
     }
+}
+
+/// Every pipeline whose shaders are timed.
+pub(super) fn pipelines(settings: &BenchSettings) -> Vec<Settings> {
+    let mut pipelines = settings.pipelines();
+    pipelines.push(Settings { masked: true, ..settings.base });
+    pipelines
+}
+
+/// The scanlines at the questions of the frames; the tree, which knows zero edges only, at one.
+fn rivals(settings: &BenchSettings, map: &MapInfo) -> Vec<(Case, Work)> {
+    let asked = |rivals: Vec<Rival>, radii: &[u32], edges| {
+        let (max_radius, edges) = (radii.to_vec(), vec![edges]);
+        rival::cases(&BenchSettings { max_radius, edges, rivals, ..settings.clone() }, map)
+    };
+    let (trees, others) = settings.rivals.iter().partition(|rival| **rival == Rival::Kiddo);
+    let mut cases = asked(others, &MAX_RADII, Edges::Scale);
+    cases.extend(asked(trees, &[SITUATION_RADIUS], Edges::Zero));
+    cases
 }
 
 fn maps_of(size: [u32; 2]) -> [MapSource; 5] {

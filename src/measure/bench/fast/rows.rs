@@ -66,7 +66,7 @@ impl Rows<'_> {
 
     /// A table by a scan.
     fn question(self, order: Order, max_radius: u32, edges: Edges) -> Settings {
-        let search = Search { order, max_radius, edges, ..self.base.search };
+        let search = Search { max_radius, edges, order, ..self.base.search };
         Settings { search, sat_build: SatBuild::Scan, ..self.base }
     }
 }

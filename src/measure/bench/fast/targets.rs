@@ -134,12 +134,12 @@ impl Judge<'_> {
         if self.rows.map.name != CAUSTIC {
             return Vec::new();
         }
-        let time = |situation| self.time(&self.rows.situation(situation));
+        let of = |situation| self.time(&self.rows.situation(situation));
         let [.., frame] = self.rows.scan_frames(SITUATION_RADIUS).map(|row| self.time(&row));
         let search = self.time(&self.rows.search(Order::Bracketed, SITUATION_RADIUS, Edges::Scale));
         let (copy, probe) = (self.unit(Unit::Copy), self.unit(Unit::Probe));
         let judged = |kind, question, situation, against, (bound, unit)| {
-            self.target(kind, question, ratio(time(situation), against), (Side::AtMost, bound, unit))
+            self.target(kind, question, ratio(of(situation), against), (Side::AtMost, bound, unit))
         };
         let empty = ("empty", "a frame without photons");
         let quarter = ("quarter", "a frame with photons in a quarter, against all");
@@ -151,7 +151,7 @@ impl Judge<'_> {
             judged(empty, "known to be empty", Situation::Empty, copy, (1.5, COPIES)),
             judged(empty, "known to have 1 at most", Situation::EmptyUnknown, copy, (1.5, COPIES)),
             judged(quarter, "", Situation::Quarter, frame, part(0.6)),
-            judged(masked, "a mask of all", Situation::HalfMasked, time(Situation::NoneMasked), part(0.6)),
+            judged(masked, "a mask of all", Situation::HalfMasked, of(Situation::NoneMasked), part(0.6)),
             judged(masked, "without a mask", Situation::HalfMasked, search, part(0.6)),
             judged(unchanged, "", Situation::Unchanged, copy, (0.1, COPIES)),
             judged(tile, "in the middle", Situation::TileChanged, frame, part(0.3)),
