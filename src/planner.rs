@@ -2,10 +2,10 @@
 //!
 //! Measured on llvmpipe at 64² to 2048² (`varikernel bench --suite fast`), in probe passes of the same size:
 //!
-//! - a table built by a scan costs less than one by doubling at every size, 2 to 3 copies against 5 to 40;
-//! - a forward search costs about 0.9 for each radius that it tries, 1.5 where all are 1;
-//! - a bracketed search costs 1.9 where photons are dense, 2.7 elsewhere, and half as much again where scaled edges are
-//!   near;
+//! - a table built by a scan costs less than one by doubling at every size, 3 to 6 copies against 8 to 34;
+//! - a forward search costs about 0.9 for each radius that it tries, 1.5 to 2 where all are 1;
+//! - a bracketed search costs about 2 where photons are dense, 2.7 elsewhere, and half as much again where scaled edges
+//!   are near;
 //! - a binary search costs log2 MR, and in maps of up to 128², which fit the processor's cache, three quarters or less
 //!   of that, while the bracketed search's ten draws cost more there.
 //!

@@ -130,7 +130,8 @@ pub struct PictureSettings {
 impl Default for PictureSettings {
     /// 512 x 512 pixels, n = 400, MR = 64, splatted with Silverman's kernel, 16 shadow rays.
     ///
-    /// Of n from 50 to 800, 400 has the least error on the glass Cornell box with a million photons.
+    /// Of n = 50, 200, 400 and 800, 400 has the least RMSE and 800 the least relative MSE in the glass Cornell box (256 x 256
+    /// pixels, 400,000 photons, a reference of 16 seeds); other scenes were not tried.
     fn default() -> Self {
         Self {
             size: UVec2::splat(512),
