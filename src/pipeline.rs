@@ -110,6 +110,7 @@ impl RadiusPipeline {
     /// As [`render`](Self::render); [`Error::Mismatch`] also if the mask is missing, not expected, or of another size;
     /// [`Error::Setting`] for photons to be added without a summed-area table.
     pub fn update(&mut self, frame: &Frame<'_>) -> Result<&RadiusMap> {
+        self.check_mask(frame)?;
         let known = self.known(frame);
         self.build_frame(&known)?;
         self.search_frame(&known)
@@ -140,6 +141,7 @@ impl RadiusPipeline {
             return Ok(self.search.radii());
         }
         let built = self.check_built(frame)?;
+        self.check_mask(frame)?;
         let _state = StateGuard::new(&self.gl);
         self.searched = false;
         if built.is_empty() {
@@ -296,7 +298,9 @@ impl RadiusPipeline {
     /// Prepares a certificate: checks that it is possible, and builds a table that was left out for lack of photons.
     fn prepare_certificate(&mut self, density: &DensityMap) -> Result<Plan> {
         Certificate::check_possible(&self.settings)?;
-        let built = self.check_built(&Frame::new(density))?;
+        let frame = Frame::new(density);
+        self.check_mask(&frame)?;
+        let built = self.check_built(&frame)?;
         if built.grown {
             return Err(Error::Mismatch {
                 what: "density map of a certificate",
@@ -324,15 +328,20 @@ impl RadiusPipeline {
     }
 
     fn check(&self, frame: &Frame<'_>) -> Result<()> {
-        let mismatch = |what, expected: String, got: String| Err(Error::Mismatch { what, expected, got });
         let density = frame.density;
-        if density.size() != self.size || density.format() != self.density_format {
-            return mismatch(
-                "density map",
-                describe(self.size, self.density_format),
-                describe(density.size(), density.format()),
-            );
+        if density.size() == self.size && density.format() == self.density_format {
+            return Ok(());
         }
+        Err(Error::Mismatch {
+            what: "density map",
+            expected: describe(self.size, self.density_format),
+            got: describe(density.size(), density.format()),
+        })
+    }
+
+    /// Checks what a search reads beside the map.
+    fn check_mask(&self, frame: &Frame<'_>) -> Result<()> {
+        let mismatch = |what, expected: String, got: String| Err(Error::Mismatch { what, expected, got });
         if frame.mask.is_some() != self.settings.masked {
             let in_words = |is: bool| if is { "one" } else { "none" }.to_owned();
             return mismatch("mask", in_words(self.settings.masked), in_words(frame.mask.is_some()));
@@ -341,7 +350,7 @@ impl RadiusPipeline {
             let size = |size: UVec2| format!("{} x {}", size.x, size.y);
             return mismatch("mask", size(self.size), size(mask.size()));
         }
-        let inputs = [Some(density.texture()), frame.mask.map(Mask::texture)];
+        let inputs = [Some(frame.density.texture()), frame.mask.map(Mask::texture)];
         if inputs.into_iter().flatten().any(|input| self.search.radii().is_written_to(input.name())) {
             return mismatch(
                 "density map or mask",
