@@ -93,7 +93,7 @@ impl AdaptivePipeline {
                 self.census = Some(Census::counted(self.map_size, photons));
             }
         }
-        let (settings, bounds) = (self.pipeline.settings(), frame.density.bounds());
+        let (settings, bounds) = (self.pipeline.settings(), self.pipeline.bounds_with(frame));
         self.choice = planner::choose(settings, self.map_size, self.census.as_ref(), bounds);
         self.pipeline.set_order(self.choice.settings.search.order)
     }

@@ -30,8 +30,9 @@ pub struct RadiusPipeline {
     certifier: Certifier,
     /// Searches of other orders, which [`set_order`](RadiusPipeline::set_order) left.
     resting: Vec<(Order, RadiusSearch)>,
-    /// What the structure holds, and whether the radii are those of it.
+    /// What the structure holds.
     built: Option<Built>,
+    /// Whether the radii are those of what the structure held last, so that a frame's changes can be searched alone.
     searched: bool,
 }
 
@@ -111,9 +112,8 @@ impl RadiusPipeline {
     /// [`Error::Setting`] for photons to be added without a summed-area table.
     pub fn update(&mut self, frame: &Frame<'_>) -> Result<&RadiusMap> {
         self.check_mask(frame)?;
-        let known = self.known(frame);
-        self.build_frame(&known)?;
-        self.search_frame(&known)
+        self.build_frame(frame)?;
+        self.search_frame(frame)
     }
 
     /// Fills the intermediate structure: the first half of [`render`](Self::render), apart for timing.
@@ -121,6 +121,7 @@ impl RadiusPipeline {
     /// # Errors
     /// As [`render`](Self::render).
     pub fn build(&mut self, density: &DensityMap) -> Result<()> {
+        self.searched = false;
         self.build_frame(&Frame::new(density))
     }
 
@@ -137,17 +138,19 @@ impl RadiusPipeline {
     /// # Errors
     /// As [`search`](Self::search) and [`update`](Self::update).
     pub fn search_frame(&mut self, frame: &Frame<'_>) -> Result<&RadiusMap> {
-        if frame.changed == Changed::Nothing && self.searched {
-            return Ok(self.search.radii());
-        }
         let built = self.check_built(frame)?;
         self.check_mask(frame)?;
+        let changed = if self.searched { frame.changed } else { Changed::Everything };
+        if changed == Changed::Nothing {
+            return Ok(self.search.radii());
+        }
+        let frame = Frame { changed, ..*frame };
         let _state = StateGuard::new(&self.gl);
         self.searched = false;
         if built.is_empty() {
-            self.search.find_nothing(frame)?;
+            self.search.find_nothing(&frame)?;
         } else {
-            self.search.estimate(frame, &self.structure)?;
+            self.search.estimate(&frame, &self.structure)?;
         }
         self.gl.check("searching radii")?;
         self.searched = true;
@@ -156,59 +159,54 @@ impl RadiusPipeline {
 
     /// The first half of [`update`](Self::update).
     fn build_frame(&mut self, frame: &Frame<'_>) -> Result<()> {
-        if frame.changed == Changed::Nothing && self.built.is_some() {
-            return Ok(());
-        }
         self.check(frame)?;
         let density = frame.density;
-        let adds_to = self.built.filter(|_| frame.changed == Changed::Added);
-        let bounds = adds_to.map_or(density.bounds(), |built| built.bounds.with(density.bounds()));
+        let map = density.texture().name();
+        let before = self.built.filter(|built| !built.is_empty());
+        let bounds = self.bounds_with(frame);
         let plan = exactness::plan(&self.settings, self.size, bounds)?;
-        if adds_to.is_some() && plan.count_limit != u32::MAX {
+        let whole = Rectangle::whole(self.size);
+        let (changed, adds) = match (frame.changed, before) {
+            (Changed::Nothing, _) if self.built.is_some_and(|built| built.map == map) => return Ok(()),
+            (Changed::Added, Some(_)) => (Some(whole), true),
+            (Changed::Rectangle { first, size }, Some(built))
+                if (built.map, built.plan, built.grown) == (map, plan, false) =>
+            {
+                (Rectangle::inside(self.size, first, size), false)
+            }
+            // Nothing that is there is of use.
+            _ => {
+                self.searched = false;
+                (Some(whole), false)
+            }
+        };
+        if adds && plan.count_limit != u32::MAX {
             return Err(Error::Inexact {
-                reason: "so many photons were added that a box may hold more than 32-bit sums do, and counts that came \
-                         in parts cannot be clamped to n"
+                reason: "so many photons were added that a box may hold more than the sums do, and counts that came in \
+                         parts cannot be clamped to n"
                     .to_owned(),
                 remedy: "give the map of all photons anew (Changed::Everything)".to_owned(),
             });
         }
         let _state = StateGuard::new(&self.gl);
-        let before = self.built.take();
-        let whole = Rectangle::whole(self.size);
-        match frame.changed {
+        self.built = None;
+        match changed {
             // No box can hold a photon, so that none will be counted.
             _ if bounds.total == 0 => (),
-            Changed::Added if adds_to.is_some() => self.structure.add(density, plan)?,
-            Changed::Rectangle { first, size } if before.is_some() => {
-                if let Some(changed) = Rectangle::inside(self.size, first, size) {
-                    self.structure.build(density, plan, changed)?;
-                }
-            }
-            _ => self.structure.build(density, plan, whole)?,
+            Some(_) if adds => self.structure.add(density, plan)?,
+            Some(changed) => self.structure.build(density, plan, changed)?,
+            None => (),
         }
         self.gl.check("building the intermediate structure")?;
-        self.built = Some(Built { map: density.texture().name(), plan, bounds, grown: adds_to.is_some() });
+        self.built = Some(Built { map, plan, bounds, grown: adds });
         Ok(())
     }
 
-    /// The frame with as much of [`Frame::changed`] as this pipeline can build on.
-    fn known<'a>(&self, frame: &Frame<'a>) -> Frame<'a> {
-        let map = frame.density.texture().name();
-        let continues = self.searched
-            && self.built.is_some_and(|built| match frame.changed {
-                Changed::Everything => false,
-                // The map of all photons was one, that of the added ones another or the same.
-                Changed::Added => !built.is_empty(),
-                Changed::Nothing => built.map == map,
-                Changed::Rectangle { .. } => {
-                    let plan = exactness::plan(&self.settings, self.size, frame.density.bounds());
-                    built.map == map
-                        && !built.grown
-                        && !built.is_empty()
-                        && plan.is_ok_and(|plan| plan == built.plan)
-                }
-            });
-        Frame { changed: if continues { frame.changed } else { Changed::Everything }, ..*frame }
+    /// Bounds of all photons that the structure will hold after a frame: its own, and those that it adds to.
+    pub(crate) fn bounds_with(&self, frame: &Frame<'_>) -> CountBounds {
+        let bounds = frame.density.bounds();
+        let before = self.built.filter(|built| frame.changed == Changed::Added && !built.is_empty());
+        before.map_or(bounds, |built| built.bounds.with(bounds))
     }
 
     /// Searches in another order from now on; the first time, its programs are compiled and its map allocated.

@@ -306,6 +306,53 @@ fn the_adaptive_pipeline_follows_the_photons_and_stays_exact() {
     }
 }
 
+/// Photons keep coming while the planner changes its mind: none of those before may be lost.
+#[test]
+fn photons_added_to_an_adaptive_pipeline_stay_when_the_order_changes() {
+    let gl = egl();
+    let question = fast(search(25, 32, Edges::Scale));
+    let mut total = sparse_map(200, 180);
+    let more = Image::from_fn(total.size(), |x, y| 1 + (x + y) % 2);
+    let mut map = upload(&gl, &total, question.search);
+    let mut pipeline = AdaptivePipeline::new(&gl, map.size(), map.format(), question).unwrap();
+    let mut orders = Vec::new();
+    for number in 0..6 {
+        let changed = if number == 0 { Changed::Everything } else { Changed::Added };
+        if number > 0 {
+            map.replace(&more, CountBounds::of(&more, question.search)).unwrap();
+            total = Image::from_fn(total.size(), |x, y| total.at(x, y) + more.at(x, y));
+        }
+        let radii = pipeline.update(&Frame { changed, ..Frame::new(&map) }).unwrap();
+        let expected = reference::radius_by_table(&total, question.search);
+        assert_same(&read(radii), &expected, &format!("addition {number}"));
+        orders.push(pipeline.choice().settings.search.order);
+        // SAFETY: the context is current.
+        unsafe { gl.glow().finish() };
+    }
+    assert!(orders.contains(&Order::Bracketed) && orders.contains(&Order::Forward), "{orders:?}");
+}
+
+/// Parts of a frame called one by one, as hosts that time them do.
+#[test]
+fn a_search_alone_believes_only_what_was_searched_before() {
+    let gl = egl();
+    let question = search(25, 9, Edges::Scale);
+    let (one, other) = (sparse_map(233, 150), random_map(233, 150, 3));
+    let corner = Changed::Rectangle { first: UVec2::ZERO, size: UVec2::ONE };
+    for settings in variants(question) {
+        let mut map = upload(&gl, &one, settings.search);
+        let mut pipeline = RadiusPipeline::new(&gl, one.size(), map.format(), settings).unwrap();
+        pipeline.build(&map).unwrap();
+        for (counts, changed) in [(&one, corner), (&other, corner), (&one, Changed::Nothing)] {
+            map.replace(counts, CountBounds::of(counts, settings.search)).unwrap();
+            pipeline.build(&map).unwrap();
+            let radii = pipeline.search_frame(&Frame { changed, ..Frame::new(&map) }).unwrap();
+            let expected = reference::radius_by_table(counts, settings.search);
+            assert_same(&read(radii), &expected, &format!("{changed:?} {settings:?}"));
+        }
+    }
+}
+
 #[test]
 fn a_map_without_photons_is_followed_by_any_other() {
     let gl = egl();
