@@ -253,8 +253,8 @@ impl RadiusPipeline {
     /// [`certificate`].
     ///
     /// # Errors
-    /// As [`search`](Self::search), also for a pipeline with masks; [`Error::Setting`] unless the method is the summed-area table; [`Error::Inexact`]
-    /// also where [`Settings::exactness`] waives it; [`Error::Gl`] while a query of the host counts samples.
+    /// As [`search`](Self::search); [`Error::Mismatch`] also for a pipeline with masks and for photons that were added;
+    /// [`Error::Setting`] unless the method is the summed-area table; [`Error::Inexact`] also where [`Settings::exactness`] waives it; [`Error::Gl`] while a query of the host counts samples.
     pub fn certify(&mut self, density: &DensityMap) -> Result<Certificate> {
         let plan = self.prepare_certificate(density)?;
         let _state = StateGuard::new(&self.gl);

@@ -46,6 +46,7 @@ const ARROWS: &[(&str, &[&str])] = &[
         &[
             "bounce_map",
             "density",
+            "frame",
             "gbuffer",
             "gl",
             "maps",

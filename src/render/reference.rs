@@ -3,8 +3,11 @@
 
 use glam::DVec3;
 
+use super::light::Light;
+use super::seen_through::{Wanted, seen_through};
 use super::sight::Place;
-use super::{Layers, Light, Progress, Traced, Wanted, add, pixel_area, rgb, seen_through};
+use super::traced::Traced;
+use super::{Layers, Progress, add, pixel_area, rgb};
 use crate::density::DensityStage;
 use crate::error::Result;
 use crate::gl::Gl;

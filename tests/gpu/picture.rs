@@ -70,6 +70,30 @@ fn a_view_of_nothing_is_black() {
     assert!(account.energy_error() < 1e-9);
 }
 
+/// Radii are kept from picture to picture, and found anew for another n or MR.
+#[test]
+fn a_renderer_used_again_gives_the_radii_of_a_new_one() {
+    let gl = egl();
+    let scene = Scene::shipped("cornell-glass").unwrap();
+    let photons = crate::stage::traced(&scene, 3000, 1);
+    let usual = settings(48, Kernel::Box, RadiusChoice::Variable);
+    let renderer = || Renderer::with_photons(&gl, &scene, &usual, &photons).unwrap();
+    let mut used = renderer();
+    let mut radii = Vec::new();
+    for (min_photons, max_radius, kernel) in
+        [(40, 16, Kernel::Box), (40, 16, Kernel::Cone), (400, 16, Kernel::Cone), (400, 3, Kernel::Cone)]
+    {
+        let settings = PictureSettings { min_photons, max_radius, kernel, ..usual };
+        let (again, _) = used.picture(&settings).unwrap();
+        let (new, _) = renderer().picture(&settings).unwrap();
+        assert_eq!((&again.radius, &again.limited), (&new.radius, &new.limited), "{settings:?}");
+        assert_eq!(again.beauty, new.beauty, "{settings:?}");
+        radii.push(again.radius);
+    }
+    assert_eq!(radii[0], radii[1], "the kernel is not asked for");
+    assert!(radii[1] != radii[2] && radii[2] != radii[3], "n and MR are");
+}
+
 #[test]
 fn settings_out_of_range_are_refused_by_name() {
     let gl = egl();

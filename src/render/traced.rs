@@ -1,0 +1,105 @@
+//! Photons for a picture: traced in parts, those that may be seen uploaded, all kept where mirrors or glass need them.
+
+use super::Progress;
+use super::nearest::PhotonGrid;
+use crate::bounce_map::BounceMaps;
+use crate::error::Result;
+use crate::gl::Gl;
+use crate::maps::PhotonPoints;
+use crate::photon::{
+    Emission, FirstHit, Photon, PhotonPoint, TraceSettings, trace_from_hits, trace_in_batches,
+};
+use crate::scene::Scene;
+use crate::settings::FirstBounce;
+use crate::view::View;
+
+/// Photons that are uploaded at once.
+const UPLOAD: usize = 1 << 20;
+
+/// Photons, where they are needed.
+#[derive(Debug)]
+pub(super) struct Traced {
+    pub(super) emitted: u32,
+    pub(super) landings: u64,
+    /// Those that may be seen, on the GPU.
+    pub(super) points: PhotonPoints,
+    /// All of them, if mirrors or glass show places outside of the picture.
+    pub(super) grid: Option<PhotonGrid>,
+}
+
+impl Traced {
+    /// Traces photons; those of direct light are left out.
+    pub(super) fn new(
+        gl: &Gl,
+        scene: &Scene,
+        view: &View,
+        trace: &TraceSettings,
+        needs_grid: bool,
+        first_bounce: FirstBounce,
+        progress: &mut dyn FnMut(Progress),
+    ) -> Result<Self> {
+        let emission = Emission::new(scene, trace)?;
+        let (mut seen, mut all) = (Vec::new(), Vec::new());
+        let mut points = PhotonPoints::new(gl);
+        let mut keep = |photons: &[Photon], points: &mut PhotonPoints| {
+            for photon in photons.iter().filter(|photon| !photon.is_direct()) {
+                let point = PhotonPoint::new(photon);
+                if needs_grid {
+                    all.push(point);
+                }
+                if point.may_be_seen(view) {
+                    seen.push(point);
+                }
+            }
+            if seen.len() >= UPLOAD {
+                points.upload(&seen[..UPLOAD])?;
+                seen.drain(..UPLOAD);
+            }
+            Ok(())
+        };
+        let mut show = |followed: u32| {
+            progress(Progress { stage: "photons", done: f64::from(followed) / f64::from(trace.photons) });
+        };
+        let landings = match first_bounce {
+            FirstBounce::Rays => {
+                let tally = trace_in_batches(scene, &emission, |photons, followed| {
+                    keep(photons, &mut points)?;
+                    show(followed);
+                    Ok(())
+                })?;
+                tally.total()
+            }
+            FirstBounce::Maps => {
+                let mut maps = BounceMaps::new(gl, scene)?;
+                let (mut landings, mut followed) = (0, 0);
+                while let Some(hits) = maps.next_hits(&emission, followed)? {
+                    let (photons, tally) = trace_from_hits(scene, trace, &hits);
+                    keep(&photons, &mut points)?;
+                    landings += tally.total();
+                    followed +=
+                        u32::try_from(hits.len()).unwrap_or_else(|_| unreachable!("a part of the photons"));
+                    show(followed);
+                }
+                landings
+            }
+        };
+        points.upload(&seen)?;
+        let grid = needs_grid.then(|| PhotonGrid::new(&all, scene.bounds()));
+        Ok(Self { emitted: trace.photons, landings, points, grid })
+    }
+}
+
+/// All photons of an emission, leaving from some places on the lights, with what they meet first as bounce maps tell it
+/// (thesis 2.6.1); for [`trace_from_hits`].
+///
+/// # Errors
+/// [`Error::Shader`](crate::Error::Shader); [`Error::Gl`](crate::Error::Gl) if the driver fails.
+pub fn first_hits(gl: &Gl, scene: &Scene, emission: &Emission<'_>) -> Result<Vec<FirstHit>> {
+    let mut maps = BounceMaps::new(gl, scene)?;
+    let (mut all, mut followed) = (Vec::new(), 0);
+    while let Some(hits) = maps.next_hits(emission, followed)? {
+        followed += u32::try_from(hits.len()).unwrap_or_else(|_| unreachable!("a part of the photons"));
+        all.extend(hits);
+    }
+    Ok(all)
+}
