@@ -2,6 +2,8 @@
 
 #[cfg(feature = "bench")]
 pub mod bench;
+#[cfg(feature = "report")]
+mod chart;
 mod difference;
 #[cfg(feature = "render")]
 mod picture;
