@@ -39,7 +39,11 @@ bool enough_within(ivec2 center, int r)
 void main()
 {
     // Helper fragments of a quad that lie outside the map run along; off the map they could loop for ever.
+#ifdef GRID_STEP
+    ivec2 center = min(GRID_STEP * ivec2(gl_FragCoord.xy) + GRID_STEP / 2, map_size - 1);
+#else
     ivec2 center = min(ivec2(gl_FragCoord.xy), map_size - 1);
+#endif
     bool masked = needs_none(center);
 
 #ifdef ORDER_FORWARD

@@ -7,8 +7,10 @@ mod figures;
 pub(crate) mod output;
 mod photons;
 mod radius;
+mod real_map;
 mod render;
 mod reproduce;
+mod study;
 mod synth;
 
 use std::io::{self, IsTerminal as _};
@@ -27,6 +29,7 @@ Examples:
   varikernel compare radius.exr other.npy      how two maps differ
   varikernel photons -o photons.npy            trace photons through a Cornell box
   varikernel reproduce                         the thesis's numbers from this machine
+  varikernel study                             run time against error, as one page
   varikernel devices                           the OpenGL devices found here";
 
 /// Variable-kernel radius maps from photon density maps, exact, in OpenGL 3.3 core.
@@ -53,6 +56,7 @@ enum Verb {
     // Boxed: it has by far the most options.
     Bench(Box<bench::Args>),
     Reproduce(reproduce::Args),
+    Study(study::Args),
     Compare(compare::Args),
     Photons(photons::Args),
     Synth(synth::Args),
@@ -75,6 +79,7 @@ pub(crate) fn run(cli: Cli) -> Result<Outcome> {
         Verb::Photons(args) => photons::run(&args),
         Verb::Synth(args) => synth::run(&args),
         Verb::Reproduce(args) => reproduce::run(&args),
+        Verb::Study(args) => study::run(&args),
         Verb::Devices(args) => devices::run(&args),
         Verb::Bench(args) => bench::run(&args),
     }

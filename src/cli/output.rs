@@ -37,6 +37,17 @@ pub(crate) fn print_rows<const COLUMNS: usize>(rows: &[[String; COLUMNS]]) -> Re
     print(&table.trim_fmt())
 }
 
+/// Sentences for people, a line each or more.
+pub(crate) fn print_sentences(sentences: &[String]) -> Result<()> {
+    let rows: Vec<_> = sentences.iter().map(|sentence| [sentence.clone()]).collect();
+    print_rows(&rows)
+}
+
+/// How the program was called, for its reports.
+pub(crate) fn command() -> String {
+    std::iter::once("varikernel".to_owned()).chain(std::env::args().skip(1)).collect::<Vec<_>>().join(" ")
+}
+
 /// The error and what caused it, as one message.
 #[expect(clippy::print_stderr, reason = "the one place for the program's last words")]
 pub(crate) fn print_error(error: &anyhow::Error) {

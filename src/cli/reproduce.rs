@@ -8,17 +8,13 @@ use anyhow::{Context as _, Result, bail};
 use indicatif::{ProgressBar, ProgressStyle};
 use varikernel::context::{self, DeviceChoice};
 use varikernel::gl::Gl;
-use varikernel::image::{ReadOptions, check_writable, read_counts, write_atomically};
+use varikernel::image::{check_writable, write_atomically};
 use varikernel::measure::report::Report;
 use varikernel::measure::reproduce::{self, RunFile};
 use varikernel::measure::thesis::claims::{self, Group, Judged};
-use varikernel::{Image, measure};
+use varikernel::measure;
 
-use super::{Outcome, output};
-
-/// The real map that runs beside those inferred from the thesis, as it comes with the program.
-const CORNELL: &[u8] = include_bytes!("../../assets/maps/cornell_glass_512.exr");
-const CORNELL_NAME: &str = "Cornell glass";
+use super::{Outcome, output, real_map};
 
 /// Reproduce the thesis: its tables, figures and claims, timed and judged on this machine.
 ///
@@ -64,8 +60,8 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     check_writable(&run_json)?;
     let earlier = if args.resume { RunFile::load(&run_json)? } else { RunFile::default() };
     let gl = context::open(&args.device)?;
-    let cornell = cornell()?;
-    let real = (&cornell, CORNELL_NAME);
+    let cornell = real_map::read()?;
+    let real = (&cornell, real_map::NAME);
 
     // What needs no clock is told at once.
     let begun = Instant::now();
@@ -101,10 +97,8 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     } else {
         print_claims(judged.iter().filter(|one| !shown.contains(&one.claim.group)))?;
     }
-    let command =
-        std::iter::once("varikernel".to_owned()).chain(std::env::args().skip(1)).collect::<Vec<_>>();
     let report = Report {
-        command: &command.join(" "),
+        command: &output::command(),
         environment: &environment(&gl, &run),
         evidence: &evidence,
         judged: &judged,
@@ -118,14 +112,6 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
         print_summary(&judged, &args.output)?;
     }
     Ok(Outcome::Done)
-}
-
-/// The map is read like any other file.
-fn cornell() -> Result<Image<u32>> {
-    let folder = tempfile::tempdir().context("can't make a temporary folder")?;
-    let file = folder.path().join("cornell_glass_512.exr");
-    fs::write(&file, CORNELL).context("can't write a temporary file")?;
-    Ok(read_counts(&file, &ReadOptions::default())?)
 }
 
 fn progress_bar() -> ProgressBar {

@@ -34,6 +34,7 @@ pub use texture::TextureFormat;
 pub use timer::{Sample, Timer, time};
 
 use std::any::Any;
+use std::cell::Cell;
 use std::ffi::{CStr, c_void};
 use std::fmt;
 use std::rc::Rc;
@@ -57,6 +58,8 @@ struct Inner {
     vertex_array: glow::VertexArray,
     nearest: glow::Sampler,
     nearest_mipmap: glow::Sampler,
+    /// What all textures of ours hold together.
+    texture_bytes: Cell<u64>,
     /// The context itself, when the library opened it. Last, so that it is dropped last.
     _context: Option<Box<dyn Any>>,
 }
@@ -155,6 +158,7 @@ impl Gl {
             vertex_array,
             nearest,
             nearest_mipmap,
+            texture_bytes: Cell::new(0),
             _context: context,
         };
         Ok(Self { inner: Rc::new(inner) })
@@ -170,6 +174,13 @@ impl Gl {
     #[must_use]
     pub fn glow(&self) -> &glow::Context {
         &self.inner.glow
+    }
+
+    /// Bytes of all textures that the library has made in this context and not dropped: every level and layer, as large as
+    /// its format says; a driver may add to it.
+    #[must_use]
+    pub fn texture_bytes(&self) -> u64 {
+        self.inner.texture_bytes.get()
     }
 
     fn vertex_array(&self) -> glow::VertexArray {

@@ -132,6 +132,8 @@ impl Texture {
         let texture = unsafe {
             let name = glow.create_texture().map_err(|what| gl_error(glow, &what))?;
             let texture = Self { gl: gl.clone(), name, format, size, levels, layers, ours: true };
+            let total = &gl.inner.texture_bytes;
+            total.set(total.get() + texture.bytes());
             texture.bind(0);
             for level in 0..levels {
                 texture.allocate_level(level);
@@ -375,6 +377,16 @@ impl Texture {
         (self.size >> level).max(UVec2::ONE)
     }
 
+    /// What its levels and layers hold.
+    fn bytes(&self) -> u64 {
+        let texels = |level| {
+            let size = self.level_size(level);
+            u64::from(size.x) * u64::from(size.y)
+        };
+        let layers = u64::from(self.layers.unwrap_or(1));
+        (0..self.levels).map(texels).sum::<u64>() * layers * self.format.texel_bytes() as u64
+    }
+
     pub(crate) fn name(&self) -> glow::Texture {
         self.name
     }
@@ -389,6 +401,8 @@ impl Drop for Texture {
         if self.ours {
             // SAFETY: the context is current while the handle lives, and the name is ours.
             unsafe { self.gl.glow().delete_texture(self.name) };
+            let total = &self.gl.inner.texture_bytes;
+            total.set(total.get() - self.bytes());
         }
     }
 }

@@ -186,8 +186,10 @@ impl Chart {
                 }
             }
             let labelled = series.points.iter().zip(at()).filter(|(point, _)| !point.label.is_empty());
-            chart.draw_series(labelled.map(|(point, at)| {
-                EmptyElement::at(at) + Text::new(point.label.clone(), (7, -14), (FONT, 12))
+            // Neighbours' labels keep apart if they take turns above and below.
+            chart.draw_series(labelled.enumerate().map(|(index, (point, at))| {
+                let place = if index % 2 == 0 { (7, -14) } else { (7, 4) };
+                EmptyElement::at(at) + Text::new(point.label.clone(), place, (FONT, 12))
             }))?;
         }
         for (index, series) in entries.iter().enumerate() {

@@ -4,6 +4,8 @@
 pub mod bench;
 #[cfg(feature = "report")]
 mod chart;
+#[cfg(feature = "report")]
+mod confidence;
 mod difference;
 #[cfg(feature = "render")]
 mod picture;
@@ -14,11 +16,15 @@ pub mod reproduce;
 #[cfg(feature = "bench")]
 pub mod rivals;
 mod statistics;
+#[cfg(feature = "report")]
+pub mod study;
 mod summary;
 #[cfg(feature = "report")]
 pub mod thesis;
 mod unit_pass;
 
+#[cfg(feature = "report")]
+pub use confidence::Interval;
 pub use difference::{Difference, Place};
 #[cfg(feature = "render")]
 pub use picture::PictureError;

@@ -218,7 +218,9 @@ impl MapSource {
         UVec2::from_array(self.info.size)
     }
 
-    pub(super) fn make(&self) -> Image<u32> {
+    /// The counts.
+    #[must_use]
+    pub fn make(&self) -> Image<u32> {
         (self.make)()
     }
 }

@@ -1,0 +1,137 @@
+//! `varikernel study`: run time against error.
+
+use std::fs;
+use std::io::Write as _;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use anyhow::{Context as _, Result};
+use indicatif::{ProgressBar, ProgressStyle};
+use varikernel::context::{self, DeviceChoice};
+use varikernel::image::{check_writable, write_atomically};
+use varikernel::measure::study::{self, Study, StudySettings, pareto};
+
+use super::{Outcome, output, real_map};
+
+/// What was found so far is saved as often as this.
+const SAVE_EVERY: Duration = Duration::from_secs(10);
+
+/// Hold run time against error: radius maps, estimates of density, and pictures.
+///
+/// Every method, build, storage and search is timed and compared with the exact radii, beside approximations that are no
+/// default anywhere. Estimates of density are compared with densities whose truth is known, and pictures with variable
+/// radii with the best fixed ones. The folder gets study.html to look at, study.csv with a row for each
+/// measurement, and study.json. Errors are the same at each run, times are not.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Args {
+    /// Folder to write to; made if it is missing.
+    #[arg(short, long, default_value = "study", value_name = "FOLDER")]
+    output: PathBuf,
+
+    /// A look at every part, within a minute.
+    #[arg(long)]
+    quick: bool,
+
+    /// Every size with every n and MR, for hours on a software renderer.
+    #[arg(long, conflicts_with = "quick")]
+    full: bool,
+
+    /// Go on with the study.json in the folder; the other options have to be the same again.
+    #[arg(long)]
+    resume: bool,
+
+    /// OpenGL device: auto, egl, egl:INDEX, osmesa, or part of a renderer's name.
+    #[arg(long, default_value_t = DeviceChoice::Auto)]
+    device: DeviceChoice,
+
+    /// Print study.json instead of tables.
+    #[arg(long)]
+    json: bool,
+}
+
+pub(crate) fn run(args: &Args) -> Result<Outcome> {
+    let settings = match (args.quick, args.full) {
+        (true, _) => StudySettings::quick(),
+        (_, true) => StudySettings::full(),
+        _ => StudySettings::usual(),
+    };
+    fs::create_dir_all(&args.output)
+        .with_context(|| format!("can't make the folder {}", args.output.display()))?;
+    let files = Files { folder: &args.output };
+    files.check()?;
+    let path = args.output.join("study.json");
+    let earlier = if args.resume { Some(Study::load(&path)?) } else { None };
+    let gl = context::open(&args.device)?;
+    if let Some(earlier) = &earlier {
+        earlier.check_resumable(&path, &Study::begin(&gl, &settings))?;
+    }
+
+    let real = real_map::read()?;
+    let bar = progress_bar();
+    let mut saved = Instant::now();
+    let study = study::run(&gl, &settings, (real_map::NAME, &real), earlier, &mut |study, progress| {
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of 1000")]
+        bar.set_position((1000.0 * progress.done) as u64);
+        bar.set_message(progress.what.clone());
+        if saved.elapsed() > SAVE_EVERY {
+            study.save(&path)?;
+            saved = Instant::now();
+        }
+        Ok(())
+    })?;
+    bar.finish_and_clear();
+    files.write(&study)?;
+    if args.json {
+        output::print_json(&study)?;
+    } else {
+        print(&study, args)?;
+    }
+    Ok(Outcome::Done)
+}
+
+/// The three files.
+struct Files<'a> {
+    folder: &'a PathBuf,
+}
+
+impl Files<'_> {
+    fn check(&self) -> Result<()> {
+        for name in ["study.json", "study.csv", "study.html"] {
+            check_writable(&self.folder.join(name))?;
+        }
+        Ok(())
+    }
+
+    fn write(&self, study: &Study) -> Result<()> {
+        study.save(&self.folder.join("study.json"))?;
+        study.save_csv(&self.folder.join("study.csv"))?;
+        let page = study.html(&output::command());
+        write_atomically(&self.folder.join("study.html"), |file| file.write_all(page.as_bytes()))?;
+        Ok(())
+    }
+}
+
+fn progress_bar() -> ProgressBar {
+    let style = ProgressStyle::with_template("{wide_bar} {percent} %, {eta} left\n{msg}");
+    let bar = ProgressBar::new(1000);
+    bar.with_style(style.unwrap_or_else(|error| unreachable!("a fixed template: {error}")))
+}
+
+/// What to choose, in words; the rest is in the files.
+fn print(study: &Study, args: &Args) -> Result<()> {
+    if let Some((question, answers)) = study.radii.first() {
+        let overall = pareto::overall(&answers.rows, *question);
+        let mut rows = vec![["way to a radius map, on the front", "copies", "wrong, %", "mean error, px"].map(str::to_owned)];
+        rows.extend(overall.iter().filter(|one| one.on_front).map(|one| {
+            [
+                one.variant.to_string(),
+                format!("{:.1}", one.copies),
+                format!("{:.2}", 100.0 * one.wrong_share),
+                format!("{:.3}", one.mean_error),
+            ]
+        }));
+        output::print_rows(&rows)?;
+    }
+    output::print_sentences(&study.words())?;
+    output::print(&format!("written: {}", args.output.join("study.html").display()))
+}

@@ -1,0 +1,165 @@
+//! Run time against error: what each way to a radius map costs and how wrong it is, how far estimates of density are from
+//! the truth, and what both mean for pictures.
+//!
+//! Three parts, each of which can be read alone:
+//!
+//! - [`radii`]: every method, build, storage and search against the exact radii, with approximations that are no
+//!   default anywhere; [`pareto`] says what to choose for which budget.
+//! - [`density`]: bias and noise of estimates on densities whose truth is known.
+//! - [`pictures`]: variable radii against the best fixed ones on the shipped scenes, for equal photons and equal time.
+//!
+//! Errors are the same to the last bit at each run with the same settings; times are not.
+
+mod approximation;
+pub mod density;
+mod files;
+mod page;
+pub mod pareto;
+mod plots;
+pub mod radii;
+pub mod shape;
+mod variant;
+mod words;
+
+pub use variant::VariantName;
+
+use std::time::Instant;
+
+use serde::{Deserialize, Serialize};
+
+use self::density::{DensityRow, DensityStudy};
+use self::radii::{Answers, Question, RadiusStudy};
+use crate::error::Result;
+use crate::gl::{Gl, ShaderSource};
+use crate::image::Image;
+use crate::measure::bench::Device;
+use crate::settings::Settings;
+
+/// What is studied.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct StudySettings {
+    /// Radius maps.
+    pub radii: RadiusStudy,
+    /// Estimates of density.
+    pub density: DensityStudy,
+}
+
+impl StudySettings {
+    /// What two processor cores do within ten minutes.
+    #[must_use]
+    pub fn usual() -> Self {
+        Self { radii: RadiusStudy::usual(), density: DensityStudy::usual() }
+    }
+
+    /// A look at every part, within a minute.
+    #[must_use]
+    pub fn quick() -> Self {
+        Self { radii: RadiusStudy::quick(), density: DensityStudy::quick() }
+    }
+
+    /// Every size with every n and MR: hours on a software renderer.
+    #[must_use]
+    pub fn full() -> Self {
+        Self { radii: RadiusStudy::full(), ..Self::usual() }
+    }
+}
+
+/// Everything that a study found so far: `study.json`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Study {
+    /// The version of the program.
+    pub program: String,
+    /// Where it ran.
+    pub device: Device,
+    /// What was asked.
+    pub settings: StudySettings,
+    /// Radius maps, question by question.
+    pub radii: Vec<(Question, Answers)>,
+    /// Estimates of density; empty until all are there.
+    pub density: Vec<DensityRow>,
+    /// Seconds that all of it took, over all runs.
+    pub seconds: f64,
+}
+
+impl Study {
+    /// Nothing found yet.
+    #[must_use]
+    pub fn begin(gl: &Gl, settings: &StudySettings) -> Self {
+        Self {
+            program: env!("CARGO_PKG_VERSION").to_owned(),
+            device: Device::of(gl.info()),
+            settings: settings.clone(),
+            radii: Vec::new(),
+            density: Vec::new(),
+            seconds: 0.0,
+        }
+    }
+
+    /// What the numbers say beside the front of radius maps, in sentences.
+    #[must_use]
+    pub fn words(&self) -> Vec<String> {
+        let mut words = words::stopping_rule(&self.density);
+        words.extend(words::density(&self.density));
+        words
+    }
+}
+
+/// Where a study is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Progress {
+    /// What is being done, for people.
+    pub what: String,
+    /// Share of the work that is done, 0 to 1, as far as can be told.
+    pub done: f64,
+}
+
+/// Parts of the time that radius maps, estimates and pictures take at the usual settings.
+const SHARES: [f64; 3] = [0.55, 0.05, 0.4];
+
+/// Finds everything, going on with `earlier` if there is one; `real` is a map of real photons with its name.
+///
+/// `observe` is called often, with all that is known by then: to save it and to show the progress.
+///
+/// # Errors
+/// [`Error::Gl`](crate::Error::Gl) if the driver fails; whatever `observe` fails with.
+pub fn run(
+    gl: &Gl,
+    settings: &StudySettings,
+    real: (&str, &Image<u32>),
+    earlier: Option<Study>,
+    observe: &mut dyn FnMut(&Study, &Progress) -> Result<()>,
+) -> Result<Study> {
+    let start = Instant::now();
+    let mut study = earlier.unwrap_or_else(|| Study::begin(gl, settings));
+    let before = study.seconds;
+    let questions = &settings.radii.questions;
+    for (index, &question) in questions.iter().enumerate() {
+        if study.radii.iter().any(|(known, _)| *known == question) {
+            continue;
+        }
+        let maps = RadiusStudy::maps(question, real);
+        let answers = radii::answer(gl, question, &maps, settings.radii.sample_ms, &mut |what, part| {
+            let Question { side, min_photons, max_radius } = question;
+            #[expect(clippy::cast_precision_loss, reason = "a share")]
+            let done = (index as f64 + part) / questions.len() as f64;
+            let what = format!("radii, side {side}, n {min_photons}, MR {max_radius}: {what}");
+            observe(&study, &Progress { what, done: SHARES[0] * done })
+        })?;
+        study.radii.push((question, answers));
+        study.seconds = before + start.elapsed().as_secs_f64();
+    }
+    if study.density.is_empty() {
+        study.density = density::run(&settings.density, &mut |done| {
+            observe(&study, &Progress { what: "density".to_owned(), done: SHARES[0] + SHARES[1] * done })
+        })?;
+    }
+    study.seconds = before + start.elapsed().as_secs_f64();
+    observe(&study, &Progress { what: "done".to_owned(), done: 1.0 })?;
+    Ok(study)
+}
+
+/// Every shader that a study may compile beside those of radius maps and pictures.
+#[must_use]
+pub fn shader_sources() -> Vec<ShaderSource> {
+    approximation::sources(&Settings::default())
+}

@@ -1,0 +1,150 @@
+//! The page of a study: `study.html`, self-contained, in light or dark.
+
+use askama::Template as _;
+
+use super::density::DensityRow;
+use super::pareto::{self, Overall};
+use super::radii::{LeftOut, Question};
+use super::shape::Shape;
+use super::{Study, plots, words};
+
+/// The page.
+#[derive(askama::Template)]
+#[template(path = "study.html")]
+struct Page<'a> {
+    study: &'a Study,
+    command: &'a str,
+    environment: Vec<(&'static str, String)>,
+    /// The first question: what is said of it, its plot and its table.
+    advice: Vec<String>,
+    questions: Vec<QuestionView>,
+    trends: Vec<String>,
+    left_out: Vec<LeftOutView>,
+    stopping_rule: (Vec<String>, String),
+    density_words: Vec<String>,
+    density_plots: Vec<String>,
+    density_rows: Vec<[String; 8]>,
+}
+
+/// A way that was not run, on which maps.
+struct LeftOutView {
+    variant: String,
+    maps: String,
+    question: String,
+    reason: String,
+}
+
+/// A question's plot and table.
+struct QuestionView {
+    title: String,
+    plot: String,
+    rows: Vec<OverallView>,
+    open: bool,
+}
+
+/// A way, as text.
+struct OverallView {
+    on_front: bool,
+    cells: [String; 5],
+}
+
+impl Study {
+    /// The whole page; `command` is what made the study.
+    ///
+    /// # Panics
+    /// Never: a string takes all that is written.
+    #[must_use]
+    pub fn html(&self, command: &str) -> String {
+        Page::of(self, command).render().expect("a string takes all that is written")
+    }
+}
+
+impl<'a> Page<'a> {
+    fn of(study: &'a Study, command: &'a str) -> Self {
+        let overall: Vec<Vec<Overall>> =
+            study.radii.iter().map(|(question, answers)| pareto::overall(&answers.rows, *question)).collect();
+        let views = study.radii.iter().zip(&overall).enumerate();
+        let questions = views.map(|(index, ((question, _), overall))| QuestionView {
+            title: title(*question),
+            plot: plots::radii(overall, *question),
+            rows: overall.iter().map(OverallView::of).collect(),
+            open: index == 0,
+        });
+        Self {
+            study,
+            command,
+            environment: environment(study),
+            advice: overall.first().map(|overall| pareto::advice(overall)).unwrap_or_default(),
+            questions: questions.collect(),
+            trends: plots::by_question(&study.radii, &overall),
+            left_out: left_out(study),
+            stopping_rule: (words::stopping_rule(&study.density), plots::stopping_rule(&study.density)),
+            density_words: words::density(&study.density),
+            density_plots: Shape::ALL.map(|shape| plots::density(&study.density, shape)).into(),
+            density_rows: study.density.iter().map(density_row).collect(),
+        }
+    }
+}
+
+/// The maps of one way, question and reason together.
+fn left_out(study: &Study) -> Vec<LeftOutView> {
+    let mut views: Vec<LeftOutView> = Vec::new();
+    for LeftOut { map, question, variant, reason } in study.radii.iter().flat_map(|(_, answers)| &answers.left_out) {
+        let (variant, question) = (variant.to_string(), title(*question));
+        let same = |view: &&mut LeftOutView| {
+            (&view.variant, &view.question, &view.reason) == (&variant, &question, reason)
+        };
+        match views.iter_mut().find(same) {
+            Some(view) => {
+                view.maps += ", ";
+                view.maps += map;
+            }
+            None => views.push(LeftOutView { variant, maps: map.clone(), question, reason: reason.clone() }),
+        }
+    }
+    views
+}
+
+fn density_row(row: &DensityRow) -> [String; 8] {
+    let number = |value: f64| format!("{value:.4}");
+    [
+        row.shape.name().to_owned(),
+        words::width(row),
+        format!("{:.2}", row.mean_radius),
+        words::interval(row.mean_error),
+        number(row.bias),
+        number(row.noise),
+        words::interval(row.rmse),
+        words::interval(row.relative_rmse),
+    ]
+}
+
+impl OverallView {
+    fn of(one: &Overall) -> Self {
+        let [wrong, mean] = match (one.promised, one.wrong_share) {
+            (true, 0.0) => ["exact", ""].map(str::to_owned),
+            (false, 0.0) => ["exact here", ""].map(str::to_owned),
+            (_, share) => [format!("{:.2}", 100.0 * share), format!("{:.3}", one.mean_error)],
+        };
+        let kibibytes = one.memory_bytes.div_ceil(1024);
+        let cells = [one.variant.to_string(), format!("{:.1}", one.copies), wrong, mean, kibibytes.to_string()];
+        Self { on_front: one.on_front, cells }
+    }
+}
+
+fn title(question: Question) -> String {
+    let Question { side, min_photons, max_radius } = question;
+    format!("{side} x {side} pixels, n = {min_photons}, MR = {max_radius}")
+}
+
+fn environment(study: &Study) -> Vec<(&'static str, String)> {
+    let device = &study.device;
+    vec![
+        ("renderer", device.renderer.clone()),
+        ("driver", device.version.clone()),
+        ("kind", if device.software { "software renderer" } else { "hardware" }.to_owned()),
+        ("processor", format!("{}, {} threads", device.processor, device.threads)),
+        ("program", format!("varikernel {}, commit {}", study.program, env!("VARIKERNEL_COMMIT"))),
+        ("time", format!("{:.0} s", study.seconds)),
+    ]
+}

@@ -1,0 +1,419 @@
+//! Run time against error of radius maps: every way to find them, on the same maps, against the exact answer.
+
+use std::time::{Duration, Instant};
+
+use glam::UVec2;
+use serde::{Deserialize, Serialize};
+
+use super::approximation::Approximation;
+use super::variant::{self, Variant, VariantName, Way};
+use crate::error::{Error, Result};
+use crate::exactness::CountBounds;
+use crate::gl::{Gl, Timer};
+use crate::image::Image;
+use crate::maps::DensityMap;
+use crate::measure::bench::{MapInfo, MapSource};
+use crate::measure::rivals::{Cores, Scanline};
+use crate::measure::{Statistics, Unit, UnitPass, total_photons};
+use crate::pipeline::RadiusPipeline;
+use crate::settings::{Search, Settings};
+use crate::synth::Kind;
+
+/// The maps of each size.
+const KINDS: [Kind; 4] = [Kind::Uniform, Kind::Caustic, Kind::Step, Kind::Spike];
+/// The seed of all maps.
+const SEED: u64 = 1;
+/// A first run that takes longer than this is the only sample.
+const LONG: Duration = Duration::from_millis(400);
+
+/// What is asked, on maps of which side.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Question {
+    /// Columns and rows.
+    pub side: u32,
+    /// n.
+    pub min_photons: u32,
+    /// MR.
+    pub max_radius: u32,
+}
+
+impl Question {
+    /// The search, with scaled edges.
+    #[must_use]
+    pub fn search(self) -> Search {
+        Search {
+            min_photons: self.min_photons,
+            max_radius: self.max_radius,
+            ..Settings::default().search
+        }
+    }
+}
+
+/// Which questions, and how long each way is timed for each map.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RadiusStudy {
+    /// The questions; the first is the one that the others vary.
+    pub questions: Vec<Question>,
+    /// Time for samples of one way on one map, in milliseconds; at least one is taken.
+    pub sample_ms: u64,
+}
+
+impl RadiusStudy {
+    /// n, MR and side varied one at a time.
+    #[must_use]
+    pub fn usual() -> Self {
+        let middle = Question { side: 256, min_photons: 25, max_radius: 32 };
+        let mut questions = vec![middle];
+        questions.extend([10, 1000].map(|min_photons| Question { min_photons, ..middle }));
+        questions.extend([8, 128].map(|max_radius| Question { max_radius, ..middle }));
+        questions.extend([64, 512].map(|side| Question { side, ..middle }));
+        Self { questions, sample_ms: 40 }
+    }
+
+    /// One question on small maps.
+    #[must_use]
+    pub fn quick() -> Self {
+        Self { questions: vec![Question { side: 64, min_photons: 25, max_radius: 32 }], sample_ms: 5 }
+    }
+
+    /// Every side with every n and MR.
+    #[must_use]
+    pub fn full() -> Self {
+        let mut questions = Self::usual().questions;
+        for side in [64, 256, 512, 1024] {
+            for min_photons in [10, 25, 1000] {
+                for max_radius in [8, 32, 128] {
+                    let question = Question { side, min_photons, max_radius };
+                    if !questions.contains(&question) {
+                        questions.push(question);
+                    }
+                }
+            }
+        }
+        Self { questions, sample_ms: 100 }
+    }
+
+    /// The maps of a question; `real` joins those of its size.
+    #[must_use]
+    pub fn maps(question: Question, real: (&str, &Image<u32>)) -> Vec<MapSource> {
+        let size = UVec2::splat(question.side);
+        let mut maps: Vec<_> = KINDS.map(|kind| MapSource::synthetic(kind, size, SEED)).into();
+        if real.1.size() == size {
+            maps.push(MapSource::given(real.0, real.1.clone()));
+        }
+        maps
+    }
+}
+
+/// How far radii are from the exact ones, in pixels.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct RadiusError {
+    /// Part of the pixels whose radius is another.
+    pub wrong_share: f64,
+    /// Mean of the distances.
+    pub mean: f64,
+    /// Root of the mean of their squares.
+    pub rms: f64,
+    /// The largest.
+    pub max: u32,
+}
+
+impl RadiusError {
+    /// Compares each pixel.
+    ///
+    /// # Panics
+    /// If the sizes differ.
+    #[must_use]
+    pub fn between(found: &Image<u32>, exact: &Image<u32>) -> Self {
+        assert_eq!(found.size(), exact.size(), "maps of one size");
+        let (mut wrong, mut sum, mut squares, mut max) = (0_u64, 0_u64, 0_u64, 0);
+        for (found, exact) in found.values().iter().zip(exact.values()) {
+            let distance = found.abs_diff(*exact);
+            wrong += u64::from(distance != 0);
+            sum += u64::from(distance);
+            squares += u64::from(distance) * u64::from(distance);
+            max = max.max(distance);
+        }
+        #[expect(clippy::cast_precision_loss, reason = "means are rounded anyway")]
+        let mean = |sum: u64| sum as f64 / found.values().len() as f64;
+        Self { wrong_share: mean(wrong), mean: mean(sum), rms: mean(squares).sqrt(), max }
+    }
+}
+
+/// One way on one map.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RadiusRow {
+    /// The map.
+    pub map: MapInfo,
+    /// All its photons.
+    pub photons: u64,
+    /// What was asked.
+    pub question: Question,
+    /// The way.
+    pub variant: VariantName,
+    /// Whether the library vouches that every radius is exact.
+    pub promised: bool,
+    /// The mean of the exact radii, in pixels.
+    pub mean_radius: f64,
+    /// Against the exact radii.
+    pub error: RadiusError,
+    /// Textures beside the density map: the structure, what builds it, brackets and the radii, in bytes.
+    pub memory_bytes: u64,
+    /// Median time of a frame, build and search.
+    pub ms: f64,
+    /// The same in passes that read and write each texel once.
+    pub copies: f64,
+    /// Samples in the median.
+    pub samples: usize,
+}
+
+/// A way that was not run on a map.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LeftOut {
+    /// The map's name.
+    pub map: String,
+    /// What was asked.
+    pub question: Question,
+    /// The way.
+    pub variant: VariantName,
+    /// Why.
+    pub reason: String,
+}
+
+/// What a question gave.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Answers {
+    /// A row for each way and map.
+    pub rows: Vec<RadiusRow>,
+    /// What no row is there for.
+    pub left_out: Vec<LeftOut>,
+}
+
+/// Runs every way on every map of a question. `observe` gets the way that is next, and the part that is done.
+///
+/// # Errors
+/// [`Error::Gl`] if the driver fails while it is timed, and whatever `observe` fails with. A way that can't be set up is left
+/// out, with the reason.
+pub fn answer(
+    gl: &Gl,
+    question: Question,
+    maps: &[MapSource],
+    sample_ms: u64,
+    observe: &mut dyn FnMut(&str, f64) -> Result<()>,
+) -> Result<Answers> {
+    let search = question.search();
+    let mut benches = Vec::new();
+    for map in maps {
+        benches.push(Bench::new(gl, map, search)?);
+    }
+    let variants = variant::all(search);
+    let mut answers = Answers::default();
+    for (done, variant) in variants.iter().enumerate() {
+        #[expect(clippy::cast_precision_loss, reason = "a share")]
+        observe(&variant.name.to_string(), done as f64 / variants.len() as f64)?;
+        // Compiled once for all maps.
+        let mut machine = None;
+        for bench in &mut benches {
+            bench.take_copy()?;
+            let row = Machine::prepared(&mut machine, gl, &bench.density, variant)
+                .and_then(|machine| bench.run(machine, question, &variant.name, sample_ms));
+            match row {
+                Ok(row) => answers.rows.push(row),
+                Err(error @ Error::Gl { .. }) => return Err(error),
+                Err(error) => answers.left_out.push(LeftOut {
+                    map: bench.map.name.clone(),
+                    question,
+                    variant: variant.name.clone(),
+                    reason: error.to_string().lines().next().unwrap_or_default().to_owned(),
+                }),
+            }
+        }
+    }
+    for bench in &benches {
+        let copy_ms = Statistics::of(&bench.copies_ms).map_or(f64::NAN, |statistics| statistics.median_ms);
+        for row in answers.rows.iter_mut().filter(|row| row.map == bench.map) {
+            row.copies = row.ms / copy_ms;
+        }
+    }
+    Ok(answers)
+}
+
+/// A map on the device with its exact answer, and the unit of time.
+struct Bench {
+    map: MapInfo,
+    photons: u64,
+    density: DensityMap,
+    /// The same, with a claim that it holds next to nothing.
+    claimed: DensityMap,
+    exact: Image<u32>,
+    mean_radius: f64,
+    copy: UnitPass,
+    copies_ms: Vec<f64>,
+    timer: Timer,
+}
+
+impl Bench {
+    fn new(gl: &Gl, map: &MapSource, search: Search) -> Result<Self> {
+        let counts = map.make();
+        let exact = Scanline::new(counts.size(), search, Cores::All).run(&counts).radius.clone();
+        let sum: u64 = exact.values().iter().map(|&radius| u64::from(radius)).sum();
+        #[expect(clippy::cast_precision_loss, reason = "a mean is rounded anyway")]
+        let mean_radius = sum as f64 / exact.values().len() as f64;
+        // Close enough for any storage.
+        let density = DensityMap::upload(gl, &counts, CountBounds::of_boxes(&counts, search))?;
+        Ok(Self {
+            map: map.info.clone(),
+            photons: total_photons(&counts),
+            claimed: DensityMap::borrow(gl, density.texture().name(), CountBounds::total_at_most(1))?,
+            density,
+            exact,
+            mean_radius,
+            copy: UnitPass::new(gl, Unit::Copy, counts.size())?,
+            copies_ms: Vec::new(),
+            timer: Timer::new(gl)?,
+        })
+    }
+
+    fn take_copy(&mut self) -> Result<()> {
+        self.copy.run(&self.density)?;
+        let ((), sample) = self.timer.time(|| self.copy.run(&self.density))?;
+        self.copies_ms.push(1000.0 * sample.query.as_secs_f64());
+        Ok(())
+    }
+
+    fn run(
+        &mut self,
+        machine: &mut Machine,
+        question: Question,
+        variant: &VariantName,
+        sample_ms: u64,
+    ) -> Result<RadiusRow> {
+        let density = if machine.unguarded { &self.claimed } else { &self.density };
+        let limit = Duration::from_millis(sample_ms);
+        // The first run compiles; where it takes long all the same, that does not matter.
+        let ((), first) = self.timer.time(|| machine.render(density))?;
+        let mut samples = vec![first];
+        if first.wall < LONG {
+            samples.clear();
+            let begun = Instant::now();
+            while samples.is_empty() || begun.elapsed() < limit {
+                samples.push(self.timer.time(|| machine.render(density))?.1);
+            }
+        }
+        let ms: Vec<f64> = samples.iter().map(|sample| 1000.0 * sample.query.as_secs_f64()).collect();
+        Ok(RadiusRow {
+            map: self.map.clone(),
+            photons: self.photons,
+            question,
+            variant: variant.clone(),
+            promised: machine.promises(&self.density, question),
+            mean_radius: self.mean_radius,
+            error: RadiusError::between(&machine.read()?, &self.exact),
+            memory_bytes: machine.memory_bytes,
+            ms: Statistics::of(&ms).map_or(f64::NAN, |statistics| statistics.median_ms),
+            copies: f64::NAN,
+            samples: samples.len(),
+        })
+    }
+}
+
+/// A way, allocated and compiled for maps of one size.
+struct Machine {
+    radii: Radii,
+    /// Whether maps come with a claim that they hold next to nothing.
+    unguarded: bool,
+    memory_bytes: u64,
+}
+
+enum Radii {
+    Searched(Box<RadiusPipeline>),
+    Approximated(Box<Approximation>),
+}
+
+impl Machine {
+    /// The one that is there, or a new one.
+    fn prepared<'a>(
+        machine: &'a mut Option<Self>,
+        gl: &Gl,
+        density: &DensityMap,
+        variant: &Variant,
+    ) -> Result<&'a mut Self> {
+        let made = match machine.take() {
+            Some(made) => made,
+            None => Self::new(gl, density, variant.way)?,
+        };
+        Ok(machine.insert(made))
+    }
+
+    fn new(gl: &Gl, density: &DensityMap, way: Way) -> Result<Self> {
+        let before = gl.texture_bytes();
+        let searched = |settings| {
+            let pipeline = RadiusPipeline::new(gl, density.size(), density.format(), settings)?;
+            Ok(Radii::Searched(Box::new(pipeline)))
+        };
+        let approximated = |approximation| Radii::Approximated(Box::new(approximation));
+        let radii = match way {
+            Way::Pipeline(settings) | Way::Unguarded(settings) => searched(settings)?,
+            Way::HalfDensity(search) => approximated(Approximation::half_density(gl, density, search)?),
+            Way::Grid(search, step) => approximated(Approximation::grid(gl, density, search, step)?),
+        };
+        let unguarded = matches!(way, Way::Unguarded(_));
+        Ok(Self { radii, unguarded, memory_bytes: gl.texture_bytes() - before })
+    }
+
+    fn render(&mut self, density: &DensityMap) -> Result<()> {
+        match &mut self.radii {
+            Radii::Searched(pipeline) => pipeline.render(density).map(drop),
+            Radii::Approximated(approximation) => approximation.render(density),
+        }
+    }
+
+    fn read(&self) -> Result<Image<u32>> {
+        match &self.radii {
+            Radii::Searched(pipeline) => pipeline.radii().read(),
+            Radii::Approximated(approximation) => approximation.read(),
+        }
+    }
+
+    /// Whether the library vouches for the radii of a map.
+    fn promises(&self, density: &DensityMap, question: Question) -> bool {
+        match &self.radii {
+            Radii::Searched(pipeline) => {
+                let asked = pipeline.settings().search.max_radius == question.max_radius;
+                !self.unguarded && asked && pipeline.plan(density).is_ok_and(|plan| plan.exact)
+            }
+            Radii::Approximated(_) => false,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_by_hand() {
+        let size = UVec2::new(4, 1);
+        let exact = Image::from_values(size, vec![1, 2, 3, 4]);
+        let found = Image::from_values(size, vec![1, 4, 3, 1]);
+        let error = RadiusError::between(&found, &exact);
+        // Distances 0, 2, 0, 3.
+        assert_eq!((error.wrong_share, error.mean, error.max), (0.5, 1.25, 3));
+        assert!((error.rms - 3.25_f64.sqrt()).abs() < 1e-15);
+        assert_eq!(RadiusError::between(&exact, &exact), RadiusError::default());
+    }
+
+    #[test]
+    fn questions_vary_one_thing_at_a_time_or_all() {
+        let Question { side, min_photons, max_radius } = RadiusStudy::usual().questions[0];
+        for question in &RadiusStudy::usual().questions[1..] {
+            let same = [
+                question.side == side,
+                question.min_photons == min_photons,
+                question.max_radius == max_radius,
+            ];
+            assert_eq!(same.iter().filter(|same| !**same).count(), 1, "{question:?}");
+        }
+        assert_eq!(RadiusStudy::full().questions.len(), 4 * 3 * 3);
+    }
+}

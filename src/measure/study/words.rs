@@ -1,0 +1,130 @@
+//! What the numbers of a study say, in sentences.
+
+use super::density::{DensityRow, Width};
+use super::shape::Shape;
+use crate::measure::Interval;
+
+/// For each shape: which n and which fixed radius are best, and which of both, by both measures.
+pub(super) fn density(rows: &[DensityRow]) -> Vec<String> {
+    let measures: [(&str, fn(&DensityRow) -> Interval); 2] =
+        [("RMSE", |row| row.rmse), ("relative RMSE", |row| row.relative_rmse)];
+    let mut words = Vec::new();
+    for shape in Shape::ALL {
+        for (name, measure) in measures {
+            let best = |growing: bool| {
+                rows.iter()
+                    .filter(|row| row.shape == shape && matches!(row.width, Width::Holding(_)) == growing)
+                    .min_by(|a, b| measure(a).mean.total_cmp(&measure(b).mean))
+            };
+            let (Some(variable), Some(fixed)) = (best(true), best(false)) else { continue };
+            let (of_variable, of_fixed) = (measure(variable), measure(fixed));
+            let verdict = if (of_variable.mean - of_fixed.mean).abs() <= of_variable.half_width + of_fixed.half_width {
+                "level"
+            } else if of_variable.mean < of_fixed.mean {
+                "variable wins"
+            } else {
+                "fixed wins"
+            };
+            words.push(format!(
+                "{}, {name}: {} of the best variable estimate ({}), {} of the best fixed one ({}): {verdict}.",
+                shape.name(),
+                interval(of_variable),
+                width(variable),
+                interval(of_fixed),
+                width(fixed),
+            ));
+        }
+    }
+    words
+}
+
+/// What c - 1 in place of c does to the mean of the uniform density, for the smallest and the largest n.
+pub(super) fn stopping_rule(rows: &[DensityRow]) -> Vec<String> {
+    let uniform = |corrected| {
+        rows.iter().filter(move |row| row.shape == Shape::Uniform && row.corrected == corrected).filter_map(
+            |row| match row.width {
+                Width::Holding(n) => Some((n, row.mean_error)),
+                Width::Fixed(_) => None,
+            },
+        )
+    };
+    let with_both = uniform(false).filter_map(|(n, plain)| {
+        let (_, corrected) = uniform(true).find(|(other, _)| *other == n)?;
+        Some((n, plain, corrected))
+    });
+    let all: Vec<_> = with_both.collect();
+    let ends = [all.first(), all.last()];
+    let mut words: Vec<String> = Vec::new();
+    for (n, plain, corrected) in ends.into_iter().flatten() {
+        let percent = |value: f64| format!("{:+.2} %", 100.0 * value);
+        words.push(format!(
+            "n = {n}: the count c puts {} into a uniform density, c - 1 puts {}.",
+            percent(plain.mean),
+            percent(corrected.mean)
+        ));
+    }
+    words.dedup();
+    words
+}
+
+/// A box, for people.
+pub(super) fn width(row: &DensityRow) -> String {
+    match (row.width, row.corrected) {
+        (Width::Holding(n), false) => format!("n = {n}"),
+        (Width::Holding(n), true) => format!("n = {n}, c - 1"),
+        (Width::Fixed(radius), _) => format!("radius {radius}"),
+    }
+}
+
+/// A mean with its interval of 95 %.
+pub(super) fn interval(Interval { mean, half_width }: Interval) -> String {
+    format!("{mean:.4} ± {half_width:.4}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(width: Width, corrected: bool, rmse: f64, mean_error: f64) -> DensityRow {
+        DensityRow {
+            shape: Shape::Uniform,
+            width,
+            corrected,
+            seeds: 4,
+            mean_radius: 1.0,
+            mean_error: Interval { mean: mean_error, half_width: 0.001 },
+            bias: 0.0,
+            noise: rmse,
+            rmse: Interval { mean: rmse, half_width: 0.01 },
+            relative_rmse: Interval { mean: 2.0 * rmse, half_width: 0.3 },
+        }
+    }
+
+    #[test]
+    fn the_best_of_both_kinds_are_named() {
+        let mut rows = vec![
+            row(Width::Holding(10), false, 0.3, 0.02),
+            row(Width::Holding(10), true, 0.2, -0.001),
+            row(Width::Fixed(2), false, 0.4, 0.0),
+            row(Width::Fixed(3), false, 0.1, 0.0),
+        ];
+        assert_eq!(
+            density(&rows),
+            [
+                "uniform, RMSE: 0.2000 ± 0.0100 of the best variable estimate (n = 10, c - 1), 0.1000 ± 0.0100 of the best \
+                 fixed one (radius 3): fixed wins.",
+                "uniform, relative RMSE: 0.4000 ± 0.3000 of the best variable estimate (n = 10, c - 1), 0.2000 ± 0.3000 of \
+                 the best fixed one (radius 3): level."
+            ]
+        );
+        assert_eq!(
+            stopping_rule(&rows),
+            ["n = 10: the count c puts +2.00 % into a uniform density, c - 1 puts -0.10 %."]
+        );
+        rows[3].rmse.mean = 0.19;
+        assert!(density(&rows)[0].ends_with("level."));
+        rows[3].rmse.mean = 0.5;
+        assert!(density(&rows)[0].ends_with("variable wins."));
+        assert_eq!(density(&[]), [""; 0]);
+    }
+}
