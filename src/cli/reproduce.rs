@@ -9,10 +9,10 @@ use indicatif::{ProgressBar, ProgressStyle};
 use varikernel::context::{self, DeviceChoice};
 use varikernel::gl::Gl;
 use varikernel::image::{check_writable, write_atomically};
+use varikernel::measure;
 use varikernel::measure::report::Report;
 use varikernel::measure::reproduce::{self, RunFile};
 use varikernel::measure::thesis::claims::{self, Group, Judged};
-use varikernel::measure;
 
 use super::{Outcome, output, real_map};
 

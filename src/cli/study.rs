@@ -28,13 +28,8 @@ pub(crate) struct Args {
     #[arg(short, long, default_value = "study", value_name = "FOLDER")]
     output: PathBuf,
 
-    /// A look at every part, within a minute.
-    #[arg(long)]
-    quick: bool,
-
-    /// Every size with every n and MR, for hours on a software renderer.
-    #[arg(long, conflicts_with = "quick")]
-    full: bool,
+    #[command(flatten)]
+    extent: Extent,
 
     /// Go on with the study.json in the folder; the other options have to be the same again.
     #[arg(long)]
@@ -49,12 +44,32 @@ pub(crate) struct Args {
     json: bool,
 }
 
+/// How much is studied.
+#[derive(Debug, clap::Args)]
+struct Extent {
+    /// A look at every part, within a minute.
+    #[arg(long)]
+    quick: bool,
+
+    /// Every size with every n and MR, for hours on a software renderer.
+    #[arg(long, conflicts_with = "quick")]
+    full: bool,
+}
+
+impl Extent {
+    fn settings(&self) -> StudySettings {
+        if self.quick {
+            StudySettings::quick()
+        } else if self.full {
+            StudySettings::full()
+        } else {
+            StudySettings::usual()
+        }
+    }
+}
+
 pub(crate) fn run(args: &Args) -> Result<Outcome> {
-    let settings = match (args.quick, args.full) {
-        (true, _) => StudySettings::quick(),
-        (_, true) => StudySettings::full(),
-        _ => StudySettings::usual(),
-    };
+    let settings = args.extent.settings();
     fs::create_dir_all(&args.output)
         .with_context(|| format!("can't make the folder {}", args.output.display()))?;
     let files = Files { folder: &args.output };
@@ -121,7 +136,9 @@ fn progress_bar() -> ProgressBar {
 fn print(study: &Study, args: &Args) -> Result<()> {
     if let Some((question, answers)) = study.radii.first() {
         let overall = pareto::overall(&answers.rows, *question);
-        let mut rows = vec![["way to a radius map, on the front", "copies", "wrong, %", "mean error, px"].map(str::to_owned)];
+        let mut rows = vec![
+            ["way to a radius map, on the front", "copies", "wrong, %", "mean error, px"].map(str::to_owned),
+        ];
         rows.extend(overall.iter().filter(|one| one.on_front).map(|one| {
             [
                 one.variant.to_string(),

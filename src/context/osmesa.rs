@@ -14,6 +14,9 @@ const ATTRIBUTES: [c_int; 12] = [0x22, 0x1908, 0x30, 24, 0x33, 0x34, 0x36, 3, 0x
 
 const GL_UNSIGNED_BYTE: u32 = 0x1401;
 
+/// The values of `GALLIUM_DRIVER` under which OSMesa makes a context; under others it reads through a null pointer.
+const GALLIUM_DRIVERS: [&str; 3] = ["", "llvmpipe", "softpipe"];
+
 type CreateContextAttribs = unsafe extern "C" fn(*const c_int, *mut c_void) -> *mut c_void;
 type MakeCurrent = unsafe extern "C" fn(*mut c_void, *mut c_void, u32, c_int, c_int) -> u8;
 type GetProcAddress = unsafe extern "C" fn(*const c_char) -> *const c_void;
@@ -37,6 +40,14 @@ impl Drop for OsMesa {
 
 /// Makes a 3.3 core context and makes it current.
 pub(super) fn open() -> Result<Opened, String> {
+    if let Some(driver) = std::env::var_os("GALLIUM_DRIVER")
+        && !GALLIUM_DRIVERS.iter().any(|known| driver == *known)
+    {
+        return Err(format!(
+            "the environment sets GALLIUM_DRIVER to {}, and OSMesa knows llvmpipe and softpipe",
+            driver.display()
+        ));
+    }
     let library = Rc::new(load()?);
     // SAFETY: the names and types are those of GL/osmesa.h; the library is kept as long as the functions.
     let (create, make_current, get_proc_address, destroy) = unsafe {

@@ -129,7 +129,8 @@ impl Chart {
             return plot.draw(&Text::new("nothing was measured", (10, 40), (FONT, 14)));
         }
         let along_x = Place::of(&self.x.scale, points().map(|point| point.x), 1.15);
-        let ends = points().flat_map(|point| [point.y - point.half_width, point.y, point.y + point.half_width]);
+        let ends =
+            points().flat_map(|point| [point.y - point.half_width, point.y, point.y + point.half_width]);
         // An interval that reaches past 0 is cut, not the reason for a wider axis.
         let ends = ends.filter(|end| *end > 0.0 || self.y.scale == Scale::Linear);
         let zeros = points().map(|point| point.y).filter(|y| *y == 0.0);

@@ -28,7 +28,8 @@ impl Interval {
         }
         let squares: f64 = samples.iter().map(|sample| (sample - mean).powi(2)).sum();
         let deviation = (squares / (count - 1.0)).sqrt();
-        let t = StudentsT::new(0.0, 1.0, count - 1.0).expect("at least one degree of freedom").inverse_cdf(0.975);
+        let t =
+            StudentsT::new(0.0, 1.0, count - 1.0).expect("at least one degree of freedom").inverse_cdf(0.975);
         Self { mean, half_width: t * deviation / count.sqrt() }
     }
 }

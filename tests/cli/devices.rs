@@ -84,3 +84,15 @@ fn without_a_driver_every_answer_and_every_install_command_is_given() {
     }
     assert!(place.content() == before);
 }
+
+#[test]
+fn a_software_renderer_that_osmesa_does_not_know_is_said_and_does_not_crash() {
+    let place = Workplace::new();
+    for driver in ["none", "zink"] {
+        let run = place.command("devices").env("GALLIUM_DRIVER", driver).assert();
+        let stdout = String::from_utf8(run.get_output().stdout.clone()).unwrap();
+        assert!(run.get_output().status.code().is_some(), "ended by a signal: {stdout}");
+        assert!(stdout.contains("GALLIUM_DRIVER") && stdout.contains(driver), "{stdout}");
+    }
+    place.command("devices --json").env("GALLIUM_DRIVER", "softpipe").assert().success();
+}

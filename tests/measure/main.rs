@@ -5,6 +5,7 @@
 mod program;
 mod rivals;
 mod runs;
+mod study;
 mod suite;
 mod timer;
 

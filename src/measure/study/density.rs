@@ -119,7 +119,8 @@ pub fn run<E>(
                     // It does not wait for a photon.
                     Width::Fixed(_) => &[false],
                 };
-                let found: Vec<Boxes> = maps.iter().map(|map| Boxes::of(map, width, study.max_radius)).collect();
+                let found: Vec<Boxes> =
+                    maps.iter().map(|map| Boxes::of(map, width, study.max_radius)).collect();
                 let row = |&corrected: &bool| row(study, shape, width, corrected, &truth, &found);
                 corrections.iter().map(row).collect()
             })
@@ -173,7 +174,7 @@ fn row(
     found: &[Boxes],
 ) -> DensityRow {
     let maps: Vec<Vec<f64>> = found.iter().map(|boxes| boxes.estimates(corrected).collect()).collect();
-    let Errors { mean_errors, rmses, relative_rmses, bias, noise } = Errors::of(&maps, truth.values());
+    let Errors { means, rmses, relative_rmses, bias, noise } = Errors::of(&maps, truth.values());
     let unit = study.photons_per_pixel;
     let in_unit = |values: &[f64]| Interval::of(&values.iter().map(|value| value / unit).collect::<Vec<_>>());
     DensityRow {
@@ -182,7 +183,7 @@ fn row(
         corrected,
         seeds: study.seeds,
         mean_radius: mean(found.iter().map(|boxes| boxes.mean_radius)),
-        mean_error: in_unit(&mean_errors),
+        mean_error: in_unit(&means),
         bias: bias / unit,
         noise: noise / unit,
         rmse: in_unit(&rmses),
@@ -194,7 +195,7 @@ fn row(
 #[derive(Debug, PartialEq)]
 struct Errors {
     /// For each map, the mean of estimate minus truth.
-    mean_errors: Vec<f64>,
+    means: Vec<f64>,
     /// For each map, the root of the mean squared error.
     rmses: Vec<f64>,
     /// The same, in parts of each pixel's truth.
@@ -205,7 +206,8 @@ struct Errors {
 
 impl Errors {
     fn of(maps: &[Vec<f64>], truth: &[f64]) -> Self {
-        let errors = |map: &[f64]| -> Vec<f64> { map.iter().zip(truth).map(|(found, truth)| found - truth).collect() };
+        let errors =
+            |map: &[f64]| -> Vec<f64> { map.iter().zip(truth).map(|(found, truth)| found - truth).collect() };
         let errors: Vec<Vec<f64>> = maps.iter().map(|map| errors(map)).collect();
         #[expect(clippy::cast_precision_loss, reason = "a few maps")]
         let count = maps.len() as f64;
@@ -219,11 +221,10 @@ impl Errors {
         }
         #[expect(clippy::cast_precision_loss, reason = "far fewer than 2^53 pixels")]
         let pixels = truth.len() as f64;
-        let relative = |map: &Vec<f64>| {
-            mean(map.iter().zip(truth).map(|(error, truth)| (error / truth).powi(2))).sqrt()
-        };
+        let relative =
+            |map: &Vec<f64>| mean(map.iter().zip(truth).map(|(error, truth)| (error / truth).powi(2))).sqrt();
         Self {
-            mean_errors: errors.iter().map(|map| mean(map.iter().copied())).collect(),
+            means: errors.iter().map(|map| mean(map.iter().copied())).collect(),
             rmses: errors.iter().map(|map| mean(map.iter().map(|error| error * error)).sqrt()).collect(),
             relative_rmses: errors.iter().map(relative).collect(),
             bias: (squared_bias / pixels).max(0.0).sqrt(),
@@ -239,6 +240,7 @@ fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
 }
 
 #[cfg(test)]
+#[expect(clippy::float_cmp, reason = "the answers are exact in binary")]
 mod tests {
     use std::convert::Infallible;
 
@@ -250,7 +252,7 @@ mod tests {
         // small twice.
         let truth = [10.0, 5.0];
         let errors = Errors::of(&[vec![11.0, 4.0], vec![13.0, 4.0]], &truth);
-        assert_eq!(errors.mean_errors, [0.0, 1.0]);
+        assert_eq!(errors.means, [0.0, 1.0]);
         assert_eq!(errors.rmses, [1.0, 5.0_f64.sqrt()]);
         // (0.1² + 0.2²) / 2 and (0.3² + 0.2²) / 2.
         assert!((errors.relative_rmses[0] - 0.025_f64.sqrt()).abs() < 1e-15);
@@ -276,7 +278,8 @@ mod tests {
         let rows = run::<Infallible>(&study, &mut |_| Ok(())).unwrap();
         assert_eq!(rows.len(), 3 * Shape::ALL.len());
         let of = |shape, width, corrected| {
-            let found = rows.iter().find(|row| (row.shape, row.width, row.corrected) == (shape, width, corrected));
+            let found =
+                rows.iter().find(|row| (row.shape, row.width, row.corrected) == (shape, width, corrected));
             found.unwrap()
         };
         let growing = of(Shape::Uniform, Width::Holding(25), false).mean_error;
@@ -286,7 +289,10 @@ mod tests {
         assert!(corrected.mean.abs() < growing.mean, "{corrected:?}");
         assert!(fixed.mean.abs() < fixed.half_width, "{fixed:?}");
         // A step is blurred, a plain is not; a wide box is less noisy than a narrow one.
-        assert!(of(Shape::Step, Width::Fixed(4), false).bias > 5.0 * of(Shape::Uniform, Width::Fixed(4), false).bias);
+        assert!(
+            of(Shape::Step, Width::Fixed(4), false).bias
+                > 5.0 * of(Shape::Uniform, Width::Fixed(4), false).bias
+        );
         for row in &rows {
             let squares = row.bias.powi(2) + row.noise.powi(2);
             assert!((squares.sqrt() / row.rmse.mean - 1.0).abs() < 0.1, "{row:?}");

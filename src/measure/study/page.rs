@@ -89,7 +89,9 @@ impl<'a> Page<'a> {
 /// The maps of one way, question and reason together.
 fn left_out(study: &Study) -> Vec<LeftOutView> {
     let mut views: Vec<LeftOutView> = Vec::new();
-    for LeftOut { map, question, variant, reason } in study.radii.iter().flat_map(|(_, answers)| &answers.left_out) {
+    for LeftOut { map, question, variant, reason } in
+        study.radii.iter().flat_map(|(_, answers)| &answers.left_out)
+    {
         let (variant, question) = (variant.to_string(), title(*question));
         let same = |view: &&mut LeftOutView| {
             (&view.variant, &view.question, &view.reason) == (&variant, &question, reason)
@@ -127,7 +129,8 @@ impl OverallView {
             (_, share) => [format!("{:.2}", 100.0 * share), format!("{:.3}", one.mean_error)],
         };
         let kibibytes = one.memory_bytes.div_ceil(1024);
-        let cells = [one.variant.to_string(), format!("{:.1}", one.copies), wrong, mean, kibibytes.to_string()];
+        let cells =
+            [one.variant.to_string(), format!("{:.1}", one.copies), wrong, mean, kibibytes.to_string()];
         Self { on_front: one.on_front, cells }
     }
 }

@@ -43,7 +43,8 @@ pub fn overall(rows: &[RadiusRow], question: Question) -> Vec<Overall> {
             continue;
         }
         #[expect(clippy::cast_precision_loss, reason = "a few maps")]
-        let mean = |of: fn(&RadiusRow) -> f64| same.iter().map(|row| of(row)).sum::<f64>() / same.len() as f64;
+        let mean =
+            |of: fn(&RadiusRow) -> f64| same.iter().map(|row| of(row)).sum::<f64>() / same.len() as f64;
         all.push(Overall {
             variant: variant.clone(),
             copies: mean(|row| row.copies.ln()).exp(),
@@ -155,11 +156,13 @@ mod tests {
 
     #[test]
     fn maps_are_taken_together_and_what_lacks_one_is_left_out() {
-        let mut rows = vec![row("a", "exact", 4.0, 0.0), row("b", "exact", 9.0, 0.0), row("a", "half", 3.0, 0.25)];
+        let mut rows =
+            vec![row("a", "exact", 4.0, 0.0), row("b", "exact", 9.0, 0.0), row("a", "half", 3.0, 0.25)];
         rows.extend([row("b", "half", 3.0, 0.75), row("a", "slow", 20.0, 0.0), row("b", "slow", 20.0, 0.0)]);
         rows.push(row("a", "partly", 1.0, 0.0));
         let overall = overall(&rows, rows[0].question);
-        let told: Vec<_> = overall.iter().map(|one| (one.variant.method.as_str(), one.copies, one.on_front)).collect();
+        let told: Vec<_> =
+            overall.iter().map(|one| (one.variant.method.as_str(), one.copies, one.on_front)).collect();
         // √(4 · 9) = 6.
         assert_eq!((told[0].0, told[0].2), ("half", true));
         assert!(told[1].0 == "exact" && (told[1].1 - 6.0).abs() < 1e-12 && told[1].2);

@@ -62,10 +62,12 @@ const FOLLOWED: [(&str, &str); 6] = [
     ("pyramid u32 forward", "pyramid, forward"),
 ];
 
+/// The part of a question that a plot varies.
+type Vary = fn(&mut Question) -> &mut u32;
+
 /// How times grow with n, MR and side, one varied at a time around the first question.
 pub(super) fn by_question(answers: &[(Question, Answers)], overall: &[Vec<Overall>]) -> Vec<String> {
     let Some((middle, _)) = answers.first() else { return Vec::new() };
-    type Vary = fn(&mut Question) -> &mut u32;
     let kinds: [(&str, &str, Vary); 3] = [
         ("Time by n", "n (photons)", |question| &mut question.min_photons),
         ("Time by MR", "MR (pixels)", |question| &mut question.max_radius),

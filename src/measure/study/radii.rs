@@ -41,11 +41,7 @@ impl Question {
     /// The search, with scaled edges.
     #[must_use]
     pub fn search(self) -> Search {
-        Search {
-            min_photons: self.min_photons,
-            max_radius: self.max_radius,
-            ..Settings::default().search
-        }
+        Search { min_photons: self.min_photons, max_radius: self.max_radius, ..Settings::default().search }
     }
 }
 

@@ -62,19 +62,29 @@ pub(super) fn all(question: Search) -> Vec<Variant> {
     let mut variants: Vec<Variant> = pipelines(question).into_iter().map(Variant::pipeline).collect();
     let fast = Settings { search: question, ..Settings::default() };
     variants.push(Variant {
-        name: VariantName { twist: "no guard".to_owned(), ..name_of(&Settings { storage: Storage::U16, ..fast }) },
+        name: VariantName {
+            twist: "no guard".to_owned(),
+            ..name_of(&Settings { storage: Storage::U16, ..fast })
+        },
         way: Way::Unguarded(Settings { storage: Storage::U16, exactness: Exactness::Waived, ..fast }),
     });
     variants.extend(as_printed(question).into_iter().map(|settings| {
         let name = VariantName { twist: "as printed".to_owned(), ..name_of(&settings) };
         Variant { name, way: Way::Pipeline(settings) }
     }));
-    variants.extend(SMALLER_RADII.into_iter().filter(|&radius| radius < question.max_radius).map(|max_radius| {
-        let settings = Settings { search: Search { max_radius, ..question }, ..fast };
-        let name = VariantName { twist: format!("MR {max_radius}"), ..name_of(&settings) };
-        Variant { name, way: Way::Pipeline(settings) }
-    }));
-    variants.push(Variant::approximation("half-density", "scan", Order::Bracketed, Way::HalfDensity(question)));
+    variants.extend(SMALLER_RADII.into_iter().filter(|&radius| radius < question.max_radius).map(
+        |max_radius| {
+            let settings = Settings { search: Search { max_radius, ..question }, ..fast };
+            let name = VariantName { twist: format!("MR {max_radius}"), ..name_of(&settings) };
+            Variant { name, way: Way::Pipeline(settings) }
+        },
+    ));
+    variants.push(Variant::approximation(
+        "half-density",
+        "scan",
+        Order::Bracketed,
+        Way::HalfDensity(question),
+    ));
     variants.extend(STEPS.map(|step| {
         let method = format!("grid-{step}");
         Variant::approximation(&method, "scan", Order::Binary, Way::Grid(question, step))
@@ -110,12 +120,7 @@ fn pipelines(question: Search) -> Vec<Settings> {
     for method in Method::ALL {
         for storage in [Storage::U32, Storage::F32, Storage::U16] {
             for order in ORDERS {
-                let one = Settings {
-                    method,
-                    storage,
-                    search: Search { order, ..question },
-                    ..usual
-                };
+                let one = Settings { method, storage, search: Search { order, ..question }, ..usual };
                 match method {
                     Method::SummedAreaTable => {
                         all.extend(SatSamples::ALL.map(|sat_samples| Settings { sat_samples, ..one }));

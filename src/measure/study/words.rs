@@ -4,13 +4,16 @@ use super::density::{DensityRow, Width};
 use super::shape::Shape;
 use crate::measure::Interval;
 
+/// A measure and its name.
+type Measure = (&'static str, fn(&DensityRow) -> Interval);
+/// The measures by which estimates are compared.
+const MEASURES: [Measure; 2] = [("RMSE", |row| row.rmse), ("relative RMSE", |row| row.relative_rmse)];
+
 /// For each shape: which n and which fixed radius are best, and which of both, by both measures.
 pub(super) fn density(rows: &[DensityRow]) -> Vec<String> {
-    let measures: [(&str, fn(&DensityRow) -> Interval); 2] =
-        [("RMSE", |row| row.rmse), ("relative RMSE", |row| row.relative_rmse)];
     let mut words = Vec::new();
     for shape in Shape::ALL {
-        for (name, measure) in measures {
+        for (name, measure) in MEASURES {
             let best = |growing: bool| {
                 rows.iter()
                     .filter(|row| row.shape == shape && matches!(row.width, Width::Holding(_)) == growing)
@@ -18,13 +21,14 @@ pub(super) fn density(rows: &[DensityRow]) -> Vec<String> {
             };
             let (Some(variable), Some(fixed)) = (best(true), best(false)) else { continue };
             let (of_variable, of_fixed) = (measure(variable), measure(fixed));
-            let verdict = if (of_variable.mean - of_fixed.mean).abs() <= of_variable.half_width + of_fixed.half_width {
-                "level"
-            } else if of_variable.mean < of_fixed.mean {
-                "variable wins"
-            } else {
-                "fixed wins"
-            };
+            let verdict =
+                if (of_variable.mean - of_fixed.mean).abs() <= of_variable.half_width + of_fixed.half_width {
+                    "level"
+                } else if of_variable.mean < of_fixed.mean {
+                    "variable wins"
+                } else {
+                    "fixed wins"
+                };
             words.push(format!(
                 "{}, {name}: {} of the best variable estimate ({}), {} of the best fixed one ({}): {verdict}.",
                 shape.name(),
