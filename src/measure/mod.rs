@@ -2,6 +2,8 @@
 
 #[cfg(feature = "bench")]
 pub mod bench;
+#[cfg(feature = "bench")]
+mod confidence;
 mod difference;
 #[cfg(feature = "render")]
 mod picture;
@@ -17,6 +19,8 @@ mod summary;
 pub mod thesis;
 mod unit_pass;
 
+#[cfg(feature = "bench")]
+pub use confidence::{CONFIDENCE_LEVEL, Confidence, RatioInterval};
 pub use difference::{Difference, Place};
 #[cfg(feature = "render")]
 pub use picture::PictureError;
