@@ -31,8 +31,7 @@ impl Confidence {
         let number = as_number(count);
         let mean = samples.iter().sum::<f64>() / number;
         let half_width = (count > 1).then(|| {
-            let variance =
-                samples.iter().map(|sample| (sample - mean).powi(2)).sum::<f64>() / (number - 1.0);
+            let variance = samples.iter().map(|sample| (sample - mean).powi(2)).sum::<f64>() / (number - 1.0);
             students_t(count - 1) * (variance / number).sqrt()
         });
         Some(Self { count, mean, half_width })
