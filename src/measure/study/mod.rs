@@ -1,0 +1,3 @@
+//! The study of run time against error.
+
+pub mod pictures;
