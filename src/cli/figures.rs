@@ -67,7 +67,7 @@ struct Report {
     settings: PictureSettings,
     renderer: String,
     reference_seeds: u32,
-    /// How far two halves of the reference's seeds are apart, halved: its own noise.
+    /// How far two halves of the reference's seeds are apart, halved: its own noise. SSIM and FLIP are of the halves.
     reference_noise: PictureError,
     figures: Vec<Figure>,
     /// Every fixed radius that was tried: from 1 up to the first that is worse than the one before by both measures.
@@ -98,7 +98,8 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     let tone_map = source.tone_map(&beauty);
     let indirect = mean(&halves[0].indirect, &halves[1].indirect);
     let apart = PictureError::between(&halves[0].indirect, &halves[1].indirect);
-    let reference_noise = PictureError { rmse: apart.rmse / 2.0, relative_mse: apart.relative_mse / 4.0 };
+    let reference_noise =
+        PictureError { rmse: apart.rmse / 2.0, relative_mse: apart.relative_mse / 4.0, ..apart };
 
     let renderer = Renderer::new(&gl, &scene, &settings, &trace, &mut |progress| bar.show(progress))
         .map_err(in_words_of_options)?;
@@ -217,7 +218,7 @@ fn caption(figure: &Figure, min_photons: u32) -> Vec<String> {
     vec![format!("{}: {width}", figure.name), errors(figure.error)]
 }
 
-fn errors(PictureError { rmse, relative_mse }: PictureError) -> String {
+fn errors(PictureError { rmse, relative_mse, .. }: PictureError) -> String {
     format!("RMSE {rmse:.5} relMSE {relative_mse:.4}")
 }
 
@@ -229,9 +230,12 @@ fn mean(a: &Image<[f32; 3]>, b: &Image<[f32; 3]>) -> Image<[f32; 3]> {
 }
 
 fn print(report: &Report, args: &Args) -> Result<()> {
-    let mut rows = vec![["picture", "RMSE", "relative MSE"].map(str::to_owned)];
+    let mut rows = vec![["picture", "RMSE", "relative MSE", "SSIM", "FLIP"].map(str::to_owned)];
     let row = |name: &str, error: PictureError| {
-        [name.to_owned(), format!("{:.5}", error.rmse), format!("{:.5}", error.relative_mse)]
+        let PictureError { rmse, relative_mse, ssim, flip } = error;
+        let numbers = [rmse, relative_mse, ssim, flip].map(|value| format!("{value:.5}"));
+        let [rmse, relative_mse, ssim, flip] = numbers;
+        [name.to_owned(), rmse, relative_mse, ssim, flip]
     };
     rows.extend(report.figures.iter().map(|figure| row(figure.name, figure.error)));
     rows.push(row("Reference's own noise", report.reference_noise));

@@ -4,7 +4,7 @@
 pub mod bench;
 #[cfg(feature = "report")]
 mod chart;
-#[cfg(feature = "report")]
+#[cfg(feature = "bench")]
 mod confidence;
 mod difference;
 #[cfg(feature = "render")]
@@ -23,8 +23,8 @@ mod summary;
 pub mod thesis;
 mod unit_pass;
 
-#[cfg(feature = "report")]
-pub use confidence::Interval;
+#[cfg(feature = "bench")]
+pub use confidence::{CONFIDENCE_LEVEL, Confidence, RatioInterval};
 pub use difference::{Difference, Place};
 #[cfg(feature = "render")]
 pub use picture::PictureError;

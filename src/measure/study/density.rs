@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use super::shape::{Shape, sample};
 use crate::image::Image;
-use crate::measure::Interval;
+use crate::measure::Confidence;
 use crate::measure::rivals::{Cores, Scanline};
 use crate::reference::{Inside, Table};
 use crate::settings::{Search, Settings};
@@ -79,15 +79,15 @@ pub struct DensityRow {
     /// The mean radius, in pixels.
     pub mean_radius: f64,
     /// Mean of estimate minus truth: what is too much or too little in all, with its interval over seeds.
-    pub mean_error: Interval,
+    pub mean_error: Confidence,
     /// Root of the mean squared bias, the part of it that is chance taken off.
     pub bias: f64,
     /// Root of the mean variance over seeds.
     pub noise: f64,
     /// Root of the mean squared error, with its interval over seeds.
-    pub rmse: Interval,
+    pub rmse: Confidence,
     /// The same with each pixel's error in parts of its own truth: dim pixels count as much as bright ones.
-    pub relative_rmse: Interval,
+    pub relative_rmse: Confidence,
 }
 
 /// Every estimate of every shape, the same bits whatever the number of threads. `observe` gets the part that is done.
@@ -176,7 +176,8 @@ fn row(
     let maps: Vec<Vec<f64>> = found.iter().map(|boxes| boxes.estimates(corrected).collect()).collect();
     let Errors { means, rmses, relative_rmses, bias, noise } = Errors::of(&maps, truth.values());
     let unit = study.photons_per_pixel;
-    let in_unit = |values: &[f64]| Interval::of(&values.iter().map(|value| value / unit).collect::<Vec<_>>());
+    let confidence = |values: Vec<f64>| Confidence::of(&values).expect("at least two seeds");
+    let in_unit = |values: &[f64]| confidence(values.iter().map(|value| value / unit).collect());
     DensityRow {
         shape,
         width,
@@ -187,7 +188,7 @@ fn row(
         bias: bias / unit,
         noise: noise / unit,
         rmse: in_unit(&rmses),
-        relative_rmse: Interval::of(&relative_rmses),
+        relative_rmse: confidence(relative_rmses),
     }
 }
 
@@ -285,9 +286,9 @@ mod tests {
         let growing = of(Shape::Uniform, Width::Holding(25), false).mean_error;
         let corrected = of(Shape::Uniform, Width::Holding(25), true).mean_error;
         let fixed = of(Shape::Uniform, Width::Fixed(4), false).mean_error;
-        assert!(growing.mean - growing.half_width > 0.0, "{growing:?}");
+        assert!(growing.mean - growing.margin() > 0.0, "{growing:?}");
         assert!(corrected.mean.abs() < growing.mean, "{corrected:?}");
-        assert!(fixed.mean.abs() < fixed.half_width, "{fixed:?}");
+        assert!(fixed.mean.abs() < fixed.margin(), "{fixed:?}");
         // A step is blurred, a plain is not; a wide box is less noisy than a narrow one.
         assert!(
             of(Shape::Step, Width::Fixed(4), false).bias

@@ -7,9 +7,11 @@ use serde::Serialize;
 
 use super::Study;
 use super::density::{DensityRow, Width};
+use super::pictures::{PictureRow, PictureStudy};
 use super::radii::RadiusRow;
 use crate::error::{Error, Result};
 use crate::image::write_atomically;
+use crate::measure::PictureError;
 
 /// What a row of `study.csv` says; a part of the study fills what it measures. Times stand last: all before them is the same
 /// at each run.
@@ -40,6 +42,8 @@ struct Record<'a> {
     /// Whether the library vouches for exact radii.
     promised: Option<bool>,
     mean_radius: Option<f64>,
+    /// Part of the pixels that MR ended.
+    limited_share: Option<f64>,
     /// Radii, in pixels: part of the pixels that are off, and the distances.
     wrong_share: Option<f64>,
     mean_distance: Option<f64>,
@@ -112,13 +116,40 @@ impl<'a> Record<'a> {
             corrected: Some(row.corrected),
             mean_radius: Some(row.mean_radius),
             mean_error: Some(row.mean_error.mean),
-            mean_error_half_width: Some(row.mean_error.half_width),
+            mean_error_half_width: row.mean_error.half_width,
             bias: Some(row.bias),
             noise: Some(row.noise),
             rmse: Some(row.rmse.mean),
-            rmse_half_width: Some(row.rmse.half_width),
+            rmse_half_width: row.rmse.half_width,
             relative_rmse: Some(row.relative_rmse.mean),
-            relative_rmse_half_width: Some(row.relative_rmse.half_width),
+            relative_rmse_half_width: row.relative_rmse.half_width,
+            ..Self::default()
+        }
+    }
+
+    fn of_picture(row: &'a PictureRow, study: &PictureStudy) -> Self {
+        let [width, height] = study.size.map(Some);
+        let min_photons = row.width.min_photons();
+        let PictureError { rmse, relative_mse, ssim, flip } = row.error;
+        Self {
+            part: "picture",
+            subject: &row.scene,
+            width,
+            height,
+            photons: Some(row.photons.into()),
+            seed: Some(row.seed),
+            kernel: format!("{:?}", row.kernel).to_lowercase(),
+            min_photons,
+            max_radius: min_photons.map(|_| study.max_radius),
+            fixed_radius: row.width.radius(),
+            mean_radius: Some(row.mean_radius),
+            limited_share: Some(row.limited_share),
+            rmse: Some(rmse),
+            relative_mse: Some(relative_mse),
+            ssim: Some(ssim),
+            flip: Some(flip),
+            trace_seconds: Some(row.seconds_before),
+            picture_seconds: Some(row.seconds_drawing),
             ..Self::default()
         }
     }
@@ -181,6 +212,9 @@ impl Study {
             let density = &self.settings.density;
             for row in &self.density {
                 csv.serialize(Record::of_density(row, density.side, density.max_radius))?;
+            }
+            for row in &self.pictures {
+                csv.serialize(Record::of_picture(row, &self.settings.pictures))?;
             }
             csv.flush()
         })

@@ -15,6 +15,7 @@ pub mod density;
 mod files;
 mod page;
 pub mod pareto;
+pub mod pictures;
 mod plots;
 pub mod radii;
 pub mod shape;
@@ -28,6 +29,7 @@ use std::time::Instant;
 use serde::{Deserialize, Serialize};
 
 use self::density::{DensityRow, DensityStudy};
+use self::pictures::{PictureRow, PictureStudy, SceneReference};
 use self::radii::{Answers, Question, RadiusStudy};
 use crate::error::Result;
 use crate::gl::{Gl, ShaderSource};
@@ -42,19 +44,21 @@ pub struct StudySettings {
     pub radii: RadiusStudy,
     /// Estimates of density.
     pub density: DensityStudy,
+    /// Pictures of scenes.
+    pub pictures: PictureStudy,
 }
 
 impl StudySettings {
     /// What two processor cores do within ten minutes.
     #[must_use]
     pub fn usual() -> Self {
-        Self { radii: RadiusStudy::usual(), density: DensityStudy::usual() }
+        Self { radii: RadiusStudy::usual(), density: DensityStudy::usual(), pictures: PictureStudy::usual() }
     }
 
     /// A look at every part, within a minute.
     #[must_use]
     pub fn quick() -> Self {
-        Self { radii: RadiusStudy::quick(), density: DensityStudy::quick() }
+        Self { radii: RadiusStudy::quick(), density: DensityStudy::quick(), pictures: PictureStudy::quick() }
     }
 
     /// Every size with every n and MR: hours on a software renderer.
@@ -77,6 +81,10 @@ pub struct Study {
     pub radii: Vec<(Question, Answers)>,
     /// Estimates of density; empty until all are there.
     pub density: Vec<DensityRow>,
+    /// Pictures, row by row.
+    pub pictures: Vec<PictureRow>,
+    /// What the pictures were compared with; empty until all are there.
+    pub references: Vec<SceneReference>,
     /// Seconds that all of it took, over all runs.
     pub seconds: f64,
 }
@@ -91,6 +99,8 @@ impl Study {
             settings: settings.clone(),
             radii: Vec::new(),
             density: Vec::new(),
+            pictures: Vec::new(),
+            references: Vec::new(),
             seconds: 0.0,
         }
     }
@@ -100,6 +110,8 @@ impl Study {
     pub fn words(&self) -> Vec<String> {
         let mut words = words::stopping_rule(&self.density);
         words.extend(words::density(&self.density));
+        let (photons, time) = (pictures::equal_photons(&self.pictures), pictures::equal_time(&self.pictures));
+        words.extend(words::pictures(&photons, &time));
         words
     }
 }
@@ -152,6 +164,18 @@ pub fn run(
         study.density = density::run(&settings.density, &mut |done| {
             observe(&study, &Progress { what: "density".to_owned(), done: SHARES[0] + SHARES[1] * done })
         })?;
+    }
+    if study.references.is_empty() {
+        let earlier = study.pictures.clone();
+        let found = pictures::run(gl, &settings.pictures, earlier.clone(), &mut |rows, progress| {
+            // What an interrupted run had drawn is kept until its turn comes.
+            study.pictures = rows.to_vec();
+            study.pictures.extend(earlier.iter().filter(|row| !rows.contains(row)).cloned());
+            study.seconds = before + start.elapsed().as_secs_f64();
+            let done = SHARES[0] + SHARES[1] + SHARES[2] * progress.done;
+            observe(&study, &Progress { what: format!("pictures: {}", progress.stage), done })
+        })?;
+        (study.pictures, study.references) = (found.rows, found.references);
     }
     study.seconds = before + start.elapsed().as_secs_f64();
     observe(&study, &Progress { what: "done".to_owned(), done: 1.0 })?;

@@ -4,6 +4,7 @@ use askama::Template as _;
 
 use super::density::DensityRow;
 use super::pareto::{self, Overall};
+use super::pictures::{Chosen, EqualPhotons, EqualTime, Metric, Width, Winner, equal_photons, equal_time};
 use super::radii::{LeftOut, Question};
 use super::shape::Shape;
 use super::{Study, plots, words};
@@ -24,6 +25,9 @@ struct Page<'a> {
     density_words: Vec<String>,
     density_plots: Vec<String>,
     density_rows: Vec<[String; 8]>,
+    picture_words: Vec<String>,
+    picture_plots: Vec<String>,
+    picture_rows: Vec<[String; 8]>,
 }
 
 /// A way that was not run, on which maps.
@@ -61,6 +65,8 @@ impl Study {
 
 impl<'a> Page<'a> {
     fn of(study: &'a Study, command: &'a str) -> Self {
+        let (equal_photons, equal_time) = (equal_photons(&study.pictures), equal_time(&study.pictures));
+        let plotted = |curves: &&EqualTime| matches!(curves.metric, Metric::Rmse | Metric::RelativeMse);
         let overall: Vec<Vec<Overall>> =
             study.radii.iter().map(|(question, answers)| pareto::overall(&answers.rows, *question)).collect();
         let views = study.radii.iter().zip(&overall).enumerate();
@@ -82,6 +88,9 @@ impl<'a> Page<'a> {
             density_words: words::density(&study.density),
             density_plots: Shape::ALL.map(|shape| plots::density(&study.density, shape)).into(),
             density_rows: study.density.iter().map(density_row).collect(),
+            picture_words: words::pictures(&equal_photons, &equal_time),
+            picture_plots: equal_time.iter().filter(plotted).map(plots::pictures).collect(),
+            picture_rows: equal_photons.iter().map(picture_row).collect(),
         }
     }
 }
@@ -113,11 +122,34 @@ fn density_row(row: &DensityRow) -> [String; 8] {
         row.shape.name().to_owned(),
         words::width(row),
         format!("{:.2}", row.mean_radius),
-        words::interval(row.mean_error),
+        row.mean_error.to_string(),
         number(row.bias),
         number(row.noise),
-        words::interval(row.rmse),
-        words::interval(row.relative_rmse),
+        row.rmse.to_string(),
+        row.relative_rmse.to_string(),
+    ]
+}
+
+fn picture_row(row: &EqualPhotons) -> [String; 8] {
+    let width = |chosen: &Chosen| match chosen.width {
+        Width::Variable { min_photons } => format!("n = {min_photons}"),
+        Width::Fixed { radius } => format!("radius {radius}"),
+    };
+    let default = row.default.map_or_else(String::new, |default| default.ratio.to_string());
+    let winner = match row.best.winner {
+        Winner::Variable => "variable",
+        Winner::Fixed => "fixed",
+        Winner::Undecided => "undecided",
+    };
+    [
+        row.scene.clone(),
+        row.photons.to_string(),
+        row.metric.name().to_owned(),
+        format!("{}: {}", width(&row.fixed), row.fixed.error),
+        format!("{}: {}", width(&row.best.variable), row.best.variable.error),
+        row.best.ratio.to_string(),
+        default,
+        winner.to_owned(),
     ]
 }
 

@@ -2,6 +2,7 @@
 
 use super::density::{DensityRow, Width};
 use super::pareto::Overall;
+use super::pictures::{CurvePoint, EqualTime};
 use super::radii::{Answers, Question};
 use super::shape::Shape;
 use crate::measure::chart::{Axis, COLOURS, Chart, Point, Scale, Series, Style};
@@ -112,7 +113,7 @@ pub(super) fn density(rows: &[DensityRow], shape: Shape) -> String {
             .iter()
             .filter(|row| row.shape == shape && row.corrected == corrected)
             .filter(|row| matches!(row.width, Width::Holding(_)) == growing)
-            .map(|row| Point { half_width: row.rmse.half_width, ..Point::at(row.mean_radius, row.rmse.mean) })
+            .map(|row| Point { half_width: row.rmse.margin(), ..Point::at(row.mean_radius, row.rmse.mean) })
             .collect();
         points.sort_by(|a, b| a.x.total_cmp(&b.x));
         Series { name: name.to_owned(), colour, style, points }
@@ -141,7 +142,7 @@ pub(super) fn stopping_rule(rows: &[DensityRow]) -> String {
             .filter(|row| row.shape == Shape::Uniform && row.corrected == corrected)
             .filter_map(|row| match row.width {
                 Width::Holding(n) => Some(Point {
-                    half_width: row.mean_error.half_width,
+                    half_width: row.mean_error.margin(),
                     ..Point::at(f64::from(n), row.mean_error.mean)
                 }),
                 Width::Fixed(_) => None,
@@ -155,6 +156,32 @@ pub(super) fn stopping_rule(rows: &[DensityRow]) -> String {
         series: vec![
             line("count c", COLOURS[0], Style::Solid, false),
             line("c - 1", COLOURS[2], Style::Dashed, true),
+        ],
+    }
+    .svg()
+}
+
+/// Error of pictures over their time: variable radii with the best n, and the best fixed radius, for more and more photons.
+pub(super) fn pictures(curves: &EqualTime) -> String {
+    let line = |name: &str, colour, style, points: &[CurvePoint]| Series {
+        name: name.to_owned(),
+        colour,
+        style,
+        points: points
+            .iter()
+            .map(|point| Point {
+                half_width: point.error.margin(),
+                ..Point::at(point.seconds, point.error.mean)
+            })
+            .collect(),
+    };
+    Chart {
+        title: format!("{}: {}", curves.scene, curves.metric.name()),
+        x: axis("time of a picture without direct light (s)", Scale::Logarithmic),
+        y: axis(curves.metric.name(), Scale::Logarithmic),
+        series: vec![
+            line("variable, the best n", COLOURS[0], Style::Solid, &curves.variable),
+            line("the best fixed radius", COLOURS[1], Style::Dashed, &curves.fixed),
         ],
     }
     .svg()

@@ -1,11 +1,13 @@
 //! What the numbers of a study say, in sentences.
 
 use super::density::{DensityRow, Width};
+use super::pictures::{EqualPhotons, EqualTime, Metric, Winner};
 use super::shape::Shape;
-use crate::measure::Interval;
+use crate::measure::Confidence;
+use crate::settings::PictureSettings;
 
 /// A measure and its name.
-type Measure = (&'static str, fn(&DensityRow) -> Interval);
+type Measure = (&'static str, fn(&DensityRow) -> Confidence);
 /// The measures by which estimates are compared.
 const MEASURES: [Measure; 2] = [("RMSE", |row| row.rmse), ("relative RMSE", |row| row.relative_rmse)];
 
@@ -22,7 +24,7 @@ pub(super) fn density(rows: &[DensityRow]) -> Vec<String> {
             let (Some(variable), Some(fixed)) = (best(true), best(false)) else { continue };
             let (of_variable, of_fixed) = (measure(variable), measure(fixed));
             let verdict =
-                if (of_variable.mean - of_fixed.mean).abs() <= of_variable.half_width + of_fixed.half_width {
+                if (of_variable.mean - of_fixed.mean).abs() <= of_variable.margin() + of_fixed.margin() {
                     "level"
                 } else if of_variable.mean < of_fixed.mean {
                     "variable wins"
@@ -32,9 +34,9 @@ pub(super) fn density(rows: &[DensityRow]) -> Vec<String> {
             words.push(format!(
                 "{}, {name}: {} of the best variable estimate ({}), {} of the best fixed one ({}): {verdict}.",
                 shape.name(),
-                interval(of_variable),
+                of_variable,
                 width(variable),
-                interval(of_fixed),
+                of_fixed,
                 width(fixed),
             ));
         }
@@ -80,14 +82,60 @@ pub(super) fn width(row: &DensityRow) -> String {
     }
 }
 
-/// A mean with its interval of 95 %.
-pub(super) fn interval(Interval { mean, half_width }: Interval) -> String {
-    format!("{mean:.4} ± {half_width:.4}")
+/// Who wins how often, for equal photons and in equal time.
+pub(super) fn pictures(equal_photons: &[EqualPhotons], equal_time: &[EqualTime]) -> Vec<String> {
+    if equal_photons.is_empty() {
+        return Vec::new();
+    }
+    let n = PictureSettings::default().min_photons;
+    let mut words = Vec::new();
+    for metric in Metric::ALL {
+        let of_metric = || equal_photons.iter().filter(|one| one.metric == metric);
+        let best = count(of_metric().map(|one| one.best.winner));
+        let default = count(of_metric().filter_map(|one| Some(one.default?.winner)));
+        let of_time = equal_time.iter().filter(|one| one.metric == metric);
+        let budgets = count(of_time.flat_map(|one| &one.budgets).map(|budget| budget.winner));
+        words.push(format!(
+            "Pictures, {}: for equal photons, variable radii beat the best fixed one {} with the best n and {} with n = {n}; \
+             in equal time, {}.",
+            metric.name(),
+            best,
+            default,
+            budgets,
+        ));
+    }
+    words
+}
+
+/// "in 3 of 15 cases (4 undecided)".
+fn count(winners: impl Iterator<Item = Winner>) -> String {
+    let (mut variable, mut undecided, mut all) = (0, 0, 0);
+    for winner in winners {
+        variable += u32::from(winner == Winner::Variable);
+        undecided += u32::from(winner == Winner::Undecided);
+        all += 1;
+    }
+    match undecided {
+        0 => format!("in {variable} of {all} cases"),
+        some => format!("in {variable} of {all} cases ({some} undecided)"),
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn around(mean: f64, half_width: f64) -> Confidence {
+        Confidence { count: 4, mean, half_width: Some(half_width) }
+    }
+
+    #[test]
+    fn winners_are_counted() {
+        let winners = [Winner::Variable, Winner::Fixed, Winner::Variable];
+        assert_eq!(count(winners.into_iter()), "in 2 of 3 cases");
+        assert_eq!(count([Winner::Undecided, Winner::Fixed].into_iter()), "in 0 of 2 cases (1 undecided)");
+        assert_eq!(pictures(&[], &[]), [""; 0]);
+    }
 
     fn row(width: Width, corrected: bool, rmse: f64, mean_error: f64) -> DensityRow {
         DensityRow {
@@ -96,11 +144,11 @@ mod tests {
             corrected,
             seeds: 4,
             mean_radius: 1.0,
-            mean_error: Interval { mean: mean_error, half_width: 0.001 },
+            mean_error: around(mean_error, 0.001),
             bias: 0.0,
             noise: rmse,
-            rmse: Interval { mean: rmse, half_width: 0.01 },
-            relative_rmse: Interval { mean: 2.0 * rmse, half_width: 0.3 },
+            rmse: around(rmse, 0.01),
+            relative_rmse: around(2.0 * rmse, 0.3),
         }
     }
 

@@ -1,0 +1,136 @@
+//! One picture of the study.
+
+use serde::{Deserialize, Serialize};
+
+use crate::measure::PictureError;
+use crate::settings::{Kernel, RadiusChoice};
+
+/// What decides the radii of a picture's kernels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Width {
+    /// The smallest box that holds n photons.
+    Variable {
+        /// n.
+        min_photons: u32,
+    },
+    /// The same radius everywhere.
+    Fixed {
+        /// In pixels.
+        radius: u32,
+    },
+}
+
+impl Width {
+    /// n, of variable radii.
+    #[must_use]
+    pub fn min_photons(self) -> Option<u32> {
+        match self {
+            Self::Variable { min_photons } => Some(min_photons),
+            Self::Fixed { .. } => None,
+        }
+    }
+
+    /// The radius, if it is fixed.
+    #[must_use]
+    pub fn radius(self) -> Option<u32> {
+        match self {
+            Self::Variable { .. } => None,
+            Self::Fixed { radius } => Some(radius),
+        }
+    }
+
+    /// Whether the radius is fixed.
+    #[must_use]
+    pub fn is_fixed(self) -> bool {
+        self.radius().is_some()
+    }
+
+    /// Whether nothing smaller can be asked for.
+    pub(super) fn is_least(self) -> bool {
+        matches!(self, Self::Variable { min_photons: 1 } | Self::Fixed { radius: 1 })
+    }
+
+    pub(super) fn choice(self) -> RadiusChoice {
+        match self {
+            Self::Variable { .. } => RadiusChoice::Variable,
+            Self::Fixed { radius } => RadiusChoice::Fixed(radius),
+        }
+    }
+}
+
+/// A picture of one seed: its error is the same, bit for bit, whenever it is drawn again on the same renderer.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PictureRow {
+    /// The scene's name.
+    pub scene: String,
+    /// Photons that left the lights.
+    pub photons: u32,
+    /// Their seed.
+    pub seed: u64,
+    /// The falloff.
+    pub kernel: Kernel,
+    /// n, or the fixed radius.
+    pub width: Width,
+    /// RMSE and relative MSE of indirect light, SSIM and FLIP of the whole picture.
+    pub error: PictureError,
+    /// The mean radius over the pixels on diffuse surfaces, in pixels.
+    pub mean_radius: f64,
+    /// Share of pixels on diffuse surfaces whose search MR ended; 0 for a fixed radius.
+    pub limited_share: f64,
+    /// Seconds of the clock until the photons are traced, uploaded and counted; direct light isn't in it. All pictures of a
+    /// seed share it.
+    pub seconds_before: f64,
+    /// Seconds from there to the picture: table and search if the radii are variable, then kernels, mirrors and glass, shading,
+    /// and reading back; with setting up what these need.
+    pub seconds_drawing: f64,
+}
+
+impl PictureRow {
+    /// The names of [`csv_record`](Self::csv_record)'s fields.
+    pub const CSV_COLUMNS: [&str; 14] = [
+        "scene",
+        "photons",
+        "seed",
+        "kernel",
+        "min_photons",
+        "fixed_radius",
+        "rmse",
+        "relative_mse",
+        "ssim",
+        "flip",
+        "mean_radius",
+        "limited_share",
+        "seconds_before",
+        "seconds_drawing",
+    ];
+
+    /// Seconds of all of it.
+    #[must_use]
+    pub fn seconds(&self) -> f64 {
+        self.seconds_before + self.seconds_drawing
+    }
+
+    /// A row of CSV; numbers are written so that they are read back to the last bit.
+    #[must_use]
+    pub fn csv_record(&self) -> [String; Self::CSV_COLUMNS.len()] {
+        let number = |value: Option<u32>| value.map_or_else(String::new, |value| value.to_string());
+        let PictureError { rmse, relative_mse, ssim, flip } = self.error;
+        [
+            self.scene.clone(),
+            self.photons.to_string(),
+            self.seed.to_string(),
+            format!("{:?}", self.kernel).to_lowercase(),
+            number(self.width.min_photons()),
+            number(self.width.radius()),
+            rmse.to_string(),
+            relative_mse.to_string(),
+            ssim.to_string(),
+            flip.to_string(),
+            self.mean_radius.to_string(),
+            self.limited_share.to_string(),
+            self.seconds_before.to_string(),
+            self.seconds_drawing.to_string(),
+        ]
+    }
+}
