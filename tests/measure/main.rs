@@ -5,6 +5,7 @@
 mod program;
 mod rivals;
 mod runs;
+mod study_pictures;
 mod suite;
 mod timer;
 

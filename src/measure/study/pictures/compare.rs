@@ -70,7 +70,8 @@ pub fn equal_photons(rows: &[PictureRow]) -> Vec<EqualPhotons> {
     let mut found = Vec::new();
     for (scene, photons, kernel) in distinct(rows, |row| (row.scene.as_str(), row.photons, row.kernel)) {
         let sweep = Sweep::new(
-            rows.iter().filter(|row| (row.scene.as_str(), row.photons, row.kernel) == (scene, photons, kernel)),
+            rows.iter()
+                .filter(|row| (row.scene.as_str(), row.photons, row.kernel) == (scene, photons, kernel)),
         );
         for metric in Metric::ALL {
             let Some(fixed) = sweep.best(metric, true) else { continue };
@@ -98,7 +99,10 @@ fn paired(sweep: &Sweep<'_>, metric: Metric, first: Width, second: Width) -> Vec
 }
 
 /// What `key` says of the rows, without repetition, in their order.
-pub(super) fn distinct<'a, K: PartialEq>(rows: &'a [PictureRow], key: impl Fn(&'a PictureRow) -> K) -> Vec<K> {
+pub(super) fn distinct<'a, K: PartialEq>(
+    rows: &'a [PictureRow],
+    key: impl Fn(&'a PictureRow) -> K,
+) -> Vec<K> {
     let mut keys = Vec::new();
     for row in rows {
         let key = key(row);

@@ -81,7 +81,8 @@ impl<'a> Sweep<'a> {
 
     /// The widths, without repetition, of those that `wanted` lets pass.
     fn widths(&self, wanted: impl Fn(Width) -> bool) -> Vec<Width> {
-        let mut widths: Vec<_> = self.rows.iter().map(|row| row.width).filter(|&width| wanted(width)).collect();
+        let mut widths: Vec<_> =
+            self.rows.iter().map(|row| row.width).filter(|&width| wanted(width)).collect();
         widths.dedup();
         widths
     }

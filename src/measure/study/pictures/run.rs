@@ -137,7 +137,11 @@ impl<'s> Run<'s> {
             for number in (first..study.reference_seeds).step_by(2) {
                 let seed = REFERENCE_SEED + u64::from(number);
                 let photons = study.reference_photons;
-                half.add_seed(scene, &TraceSettings { photons, seed, ..TraceSettings::default() }, &mut |_| ())?;
+                half.add_seed(
+                    scene,
+                    &TraceSettings { photons, seed, ..TraceSettings::default() },
+                    &mut |_| (),
+                )?;
                 self.tell("reference", f64::from(photons), observe)?;
             }
             halves.push(half.picture()?);
@@ -147,8 +151,7 @@ impl<'s> Run<'s> {
             [&halves[0].indirect, &halves[1].indirect],
             [&halves[0].beauty, &halves[1].beauty],
         );
-        let noise =
-            PictureError { rmse: apart.rmse / 2.0, relative_mse: apart.relative_mse / 4.0, ..apart };
+        let noise = PictureError { rmse: apart.rmse / 2.0, relative_mse: apart.relative_mse / 4.0, ..apart };
         let photons = u64::from(study.reference_seeds) * u64::from(study.reference_photons);
         let target =
             Compared { indirect: mean(|layers| &layers.indirect), beauty: mean(|layers| &layers.beauty) };
@@ -196,7 +199,9 @@ impl<'s> Run<'s> {
             let sweep = Sweep::new(rows.iter().filter(|row| row.kernel == kernel));
             for metric in Metric::ALL {
                 for is_fixed in [false, true] {
-                    wanted.extend(sweep.best(metric, is_fixed).and_then(|best| self.beside(&sweep, best.width)));
+                    wanted.extend(
+                        sweep.best(metric, is_fixed).and_then(|best| self.beside(&sweep, best.width)),
+                    );
                 }
             }
         }
