@@ -6,6 +6,7 @@ mod program;
 mod rivals;
 mod runs;
 mod study;
+mod study_pictures;
 mod suite;
 mod timer;
 

@@ -63,12 +63,12 @@ impl PictureStudy {
         Self {
             scenes: Scene::shipped_names().map(str::to_owned).collect(),
             size: [128; 2],
-            photons: vec![20_000, 80_000, 320_000],
+            photons: vec![10_000, 40_000, 160_000],
             min_photons: vec![100, 200, 400],
             max_radius: 64,
             fixed: vec![1, 2, 3, 4, 6, 8, 11, 15, 20],
             kernels: vec![Kernel::Silverman],
-            seeds: 4,
+            seeds: 3,
             reference_seeds: 8,
             reference_photons: 1_000_000,
             light_samples: 4,
@@ -81,11 +81,10 @@ impl PictureStudy {
         Self {
             scenes: ["cornell-glass", "cornell-boxes"].map(str::to_owned).to_vec(),
             size: [48; 2],
-            photons: vec![5_000, 20_000],
+            photons: vec![4_000, 16_000],
             min_photons: vec![200, 400],
-            seeds: 3,
             reference_seeds: 4,
-            reference_photons: 250_000,
+            reference_photons: 200_000,
             ..Self::usual()
         }
     }
