@@ -85,6 +85,10 @@ fn all_sources() -> Vec<ShaderSource> {
             }
         }
     }
+    #[cfg(feature = "report")]
+    for source in varikernel::measure::study::shader_sources() {
+        sources.insert(source.fragment(), source);
+    }
     #[cfg(feature = "render")]
     for source in varikernel::render::shader_sources() {
         sources.insert(source.vertex() + &source.fragment(), source);

@@ -7,6 +7,7 @@ use glam::UVec2;
 use predicates::prelude::PredicateBooleanExt as _;
 use predicates::str::contains;
 use varikernel::measure::bench::MapSource;
+use varikernel::measure::study::pictures::PictureStudy;
 use varikernel::measure::study::radii::{self, Answers, Question, RadiusError, RadiusRow, RadiusStudy};
 use varikernel::measure::study::{self, Study, StudySettings};
 use varikernel::settings::Search;
@@ -125,7 +126,17 @@ fn approximations_are_those_of_their_twins() {
 /// Small enough to run twice.
 fn settings() -> StudySettings {
     let radii = RadiusStudy { questions: vec![Question { side: 16, ..question() }], sample_ms: 0 };
-    StudySettings { radii, ..StudySettings::quick() }
+    let pictures = PictureStudy {
+        scenes: vec!["cornell-empty".to_owned()],
+        size: [24, 20],
+        photons: vec![1500],
+        min_photons: vec![400],
+        seeds: 2,
+        reference_seeds: 2,
+        reference_photons: 10_000,
+        ..PictureStudy::quick()
+    };
+    StudySettings { radii, pictures, ..StudySettings::quick() }
 }
 
 fn run(settings: &StudySettings, earlier: Option<Study>) -> Study {
@@ -152,11 +163,15 @@ fn errors_are_the_same_at_each_run_and_an_interrupted_study_goes_on() {
     let mut loaded = Study::load(&path).unwrap();
     assert!(loaded == first, "a file holds every bit");
 
-    // Cut off before the density.
+    // Cut off before the density, and in the middle of the pictures.
     loaded.density.clear();
+    loaded.references.clear();
+    loaded.pictures.truncate(3);
+    let rows = loaded.pictures.clone();
     let times = loaded.radii.clone();
     let resumed = run(&settings, Some(loaded));
     assert!(resumed.radii == times, "what was there is not run again");
+    assert!(rows.iter().all(|row| resumed.pictures.contains(row)));
     let again = run(&settings, None);
     let of_first = errors(&first, folder.path());
     assert!(errors(&resumed, folder.path()) == of_first && errors(&again, folder.path()) == of_first);
@@ -197,7 +212,7 @@ fn the_command_writes_a_page_a_table_and_everything() {
     assert!(!page.contains("http-equiv") && !page.contains("src="), "self-contained");
     assert!(!page.contains("NaN") && !page.contains(">inf"));
     let csv = std::fs::read_to_string(folder.path().join("study/study.csv")).unwrap();
-    for part in ["\nradii,", "\ndensity,"] {
+    for part in ["\nradii,", "\ndensity,", "\npicture,"] {
         assert!(csv.contains(part), "{part}");
     }
 

@@ -142,20 +142,6 @@ fn equal_time_by_hand() {
     assert!(equal_time(&apart).iter().all(|one| one.budgets.is_empty() && one.fixed.len() == 1));
 }
 
-#[test]
-fn a_row_as_csv() {
-    let columns = PictureRow::CSV_COLUMNS;
-    let record = row(70, 3, fixed(4), 0.25, 2.0).csv_record();
-    let field = |name: &str| record[columns.iter().position(|column| *column == name).unwrap()].as_str();
-    assert_eq!(
-        (field("scene"), field("photons"), field("seed"), field("kernel")),
-        ("by-hand", "70", "3", "cone")
-    );
-    assert_eq!((field("min_photons"), field("fixed_radius")), ("", "4"));
-    assert_eq!((field("rmse"), field("ssim"), field("flip")), ("0.25", "0.9975", "0.025"));
-    assert_eq!((field("seconds_before"), field("seconds_drawing")), ("0.5", "1.5"));
-}
-
 fn small() -> PictureStudy {
     PictureStudy {
         scenes: vec!["cornell-boxes".to_owned()],

@@ -87,50 +87,9 @@ pub struct PictureRow {
 }
 
 impl PictureRow {
-    /// The names of [`csv_record`](Self::csv_record)'s fields.
-    pub const CSV_COLUMNS: [&str; 14] = [
-        "scene",
-        "photons",
-        "seed",
-        "kernel",
-        "min_photons",
-        "fixed_radius",
-        "rmse",
-        "relative_mse",
-        "ssim",
-        "flip",
-        "mean_radius",
-        "limited_share",
-        "seconds_before",
-        "seconds_drawing",
-    ];
-
     /// Seconds of all of it.
     #[must_use]
     pub fn seconds(&self) -> f64 {
         self.seconds_before + self.seconds_drawing
-    }
-
-    /// A row of CSV; numbers are written so that they are read back to the last bit.
-    #[must_use]
-    pub fn csv_record(&self) -> [String; Self::CSV_COLUMNS.len()] {
-        let number = |value: Option<u32>| value.map_or_else(String::new, |value| value.to_string());
-        let PictureError { rmse, relative_mse, ssim, flip } = self.error;
-        [
-            self.scene.clone(),
-            self.photons.to_string(),
-            self.seed.to_string(),
-            format!("{:?}", self.kernel).to_lowercase(),
-            number(self.width.min_photons()),
-            number(self.width.radius()),
-            rmse.to_string(),
-            relative_mse.to_string(),
-            ssim.to_string(),
-            flip.to_string(),
-            self.mean_radius.to_string(),
-            self.limited_share.to_string(),
-            self.seconds_before.to_string(),
-            self.seconds_drawing.to_string(),
-        ]
     }
 }
