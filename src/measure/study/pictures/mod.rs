@@ -14,6 +14,7 @@ mod equal_time;
 mod metric;
 mod row;
 mod run;
+mod studio;
 
 pub use compare::{Comparison, EqualPhotons, Winner, equal_photons};
 pub use equal_time::{Budget, CurvePoint, EqualTime, equal_time};
