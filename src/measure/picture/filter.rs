@@ -75,12 +75,13 @@ pub(super) fn weights(reach: u32, weight: impl Fn(f64) -> f64) -> Vec<f64> {
 pub(super) fn bell(sigma: f64, reach: u32) -> Vec<f64> {
     let mut bell = weights(reach, |place| (-place * place / (2.0 * sigma * sigma)).exp());
     let sum: f64 = bell.iter().sum();
-    bell.iter_mut().for_each(|weight| *weight /= sum);
+    for weight in &mut bell {
+        *weight /= sum;
+    }
     bell
 }
 
 #[cfg(test)]
-#[expect(clippy::float_cmp, reason = "the answers are exact in binary")]
 mod tests {
     use glam::UVec2;
 

@@ -81,9 +81,13 @@ fn blur(channel: &Image<f64>, sensitivity: &[(f64, f64)]) -> Vec<f64> {
         let weight = weight * (PI / width).sqrt();
         total += weight * line.iter().sum::<f64>().powi(2);
         let part = filter(channel, &line, &line, Border::Repeat);
-        sum.iter_mut().zip(part.values()).for_each(|(sum, part)| *sum += weight * part);
+        for (sum, part) in sum.iter_mut().zip(part.values()) {
+            *sum += weight * part;
+        }
     }
-    sum.iter_mut().for_each(|sum| *sum /= total);
+    for sum in &mut sum {
+        *sum /= total;
+    }
     sum
 }
 

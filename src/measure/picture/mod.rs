@@ -89,12 +89,17 @@ fn squared([picture, reference]: [&Image<[f32; 3]>; 2]) -> (f64, f64) {
 }
 
 #[cfg(test)]
+#[expect(clippy::float_cmp, reason = "the answers are exact in binary, or differ by far")]
 mod tests {
     use glam::UVec2;
 
     use super::*;
 
     const SAME: PictureError = PictureError { rmse: 0.0, relative_mse: 0.0, ssim: 1.0, flip: 0.0 };
+
+    fn small(number: u32) -> f32 {
+        f32::from(u8::try_from(number).unwrap())
+    }
 
     #[test]
     fn errors_by_hand() {
@@ -114,7 +119,7 @@ mod tests {
     fn units_are_those_of_light_and_of_nothing() {
         let size = UVec2::new(5, 4);
         let image = |step: f32, scale: f32| {
-            Image::from_fn(size, |x, y| [x, y, x + y].map(|value| scale * (0.25 + step * value as f32)))
+            Image::from_fn(size, |x, y| [x, y, x + y].map(|value| scale * (0.25 + step * small(value))))
         };
         let usual = PictureError::between(&image(0.125, 1.0), &image(0.25, 1.0));
         let brighter = PictureError::between(&image(0.125, 8.0), &image(0.25, 8.0));
@@ -145,7 +150,7 @@ mod tests {
 
     #[test]
     fn a_planted_difference_is_seen_by_all_four() {
-        let reference = Image::from_fn(UVec2::new(9, 6), |x, y| [(x + 2 * y) as f32, 3.0, (x * y) as f32]);
+        let reference = Image::from_fn(UVec2::new(9, 6), |x, y| [small(x + 2 * y), 3.0, small(x * y)]);
         let mut picture = reference.clone();
         assert_eq!(PictureError::between(&picture, &reference), SAME);
         picture.set(4, 5, [17.0, 3.0, 20.0]);

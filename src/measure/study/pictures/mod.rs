@@ -14,6 +14,7 @@ mod equal_time;
 mod metric;
 mod row;
 mod run;
+mod studio;
 
 pub use compare::{Comparison, EqualPhotons, Winner, equal_photons};
 pub use equal_time::{Budget, CurvePoint, EqualTime, equal_time};
@@ -62,8 +63,8 @@ impl PictureStudy {
     pub fn usual() -> Self {
         Self {
             scenes: Scene::shipped_names().map(str::to_owned).collect(),
-            size: [128; 2],
-            photons: vec![10_000, 40_000, 160_000],
+            size: [112; 2],
+            photons: vec![6_000, 24_000, 96_000],
             min_photons: vec![100, 200, 400],
             max_radius: 64,
             fixed: vec![1, 2, 3, 4, 6, 8, 11, 15, 20],
