@@ -13,7 +13,7 @@ use varikernel::image::{Attribute, Format, LayerFile, ToneMap, check_writable, w
 use varikernel::photon::TraceSettings;
 use varikernel::render::{Account, Layers, Progress, Reference, Renderer};
 use varikernel::scene::Scene;
-use varikernel::settings::{Estimate, FirstBounce, Kernel, PictureSettings, RadiusChoice};
+use varikernel::settings::{DirectLight, Estimate, FirstBounce, Kernel, PictureSettings, RadiusChoice};
 use varikernel::{Error, Gl, Image};
 
 use super::photons::{load, parse_count};
@@ -52,6 +52,11 @@ pub(crate) struct Args {
     #[arg(long, value_name = "SEEDS", num_args = 0..=1, default_missing_value = "16")]
     #[arg(conflicts_with_all = ["gather", "radius"])]
     reference: Option<u32>,
+
+    /// How direct light finds what is in its way: by shadow rays, or by shadow maps around --light-samples places on each
+    /// area light (thesis 2.2).
+    #[arg(long, value_enum, default_value_t = DirectLight::Traced)]
+    direct: DirectLight,
 
     /// How photons find what they meet first: by a ray each, or from maps rasterised from the lights (thesis 2.6.1).
     #[arg(long, value_enum, default_value_t = FirstBounce::Rays)]
@@ -97,7 +102,7 @@ pub(super) struct Source {
     #[arg(long, value_enum, default_value_t = Kernel::Silverman)]
     pub(super) kernel: Kernel,
 
-    /// Shadow rays for each pixel and area light.
+    /// Shadow rays for each pixel and area light; places with shadow maps on each, with --direct shadow-map.
     #[arg(long, default_value_t = 16, value_name = "NUMBER")]
     pub(super) light_samples: u32,
 
@@ -165,6 +170,7 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     let settings = PictureSettings {
         radius: args.radius,
         first_bounce: args.first_bounce,
+        direct: args.direct,
         estimate: if args.gather {
             Estimate::Gather { count_correction: args.count_correction }
         } else {

@@ -18,7 +18,7 @@ pub use traced::first_hits;
 
 use glam::{DVec3, UVec2, Vec3};
 
-use crate::bounce_map;
+use crate::cube_map;
 use crate::density::{self, DensityStage};
 use crate::error::Result;
 use crate::frame::{Changed, Frame};
@@ -31,6 +31,7 @@ use crate::pipeline::RadiusPipeline;
 use crate::scene::Scene;
 use crate::settings::{Estimate, Kernel, PictureSettings, RadiusChoice, Search, Settings};
 use crate::shade::{self, ShadeStage, TracedLight};
+use crate::shadow_map;
 use crate::splat::{self, GatherStage, SplatStage};
 use crate::view::View;
 use light::Light;
@@ -277,8 +278,8 @@ fn rgb([red, green, blue, _]: [f32; 4]) -> [f32; 3] {
 /// Every shader that a picture may compile beside those of the radius map.
 #[must_use]
 pub fn shader_sources() -> Vec<ShaderSource> {
-    let mut sources = vec![density::source(), shade::source()];
-    sources.extend(bounce_map::sources());
+    let mut sources = vec![density::source(), shade::source(), shadow_map::source()];
+    sources.extend(cube_map::sources());
     sources.extend(gbuffer::sources());
     for kernel in Kernel::ALL {
         for fixed in [false, true] {

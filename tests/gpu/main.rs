@@ -17,6 +17,7 @@ mod objects;
 mod picture;
 mod radius;
 mod shaders;
+mod shadow_map;
 #[cfg(feature = "render")]
 mod splat;
 #[cfg(feature = "render")]
