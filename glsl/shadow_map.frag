@@ -43,7 +43,7 @@ vec4 texel(int index)
 }
 
 // Whether the sphere is met between a place and another that is `away` from it.
-bool is_behind_sphere(vec3 from, vec3 away, vec3 centre, float radius)
+bool is_sphere_between(vec3 from, vec3 away, vec3 centre, float radius)
 {
     vec3 outward = from - centre;
     float squared = dot(away, away);
@@ -66,30 +66,36 @@ bool is_behind_sphere(vec3 from, vec3 away, vec3 centre, float radius)
     return (first > 0.0 && first < end) || (second > 0.0 && second < end);
 }
 
-// Whether the triangle is met between a place and another that is `away` from it.
-bool is_behind_triangle(vec3 from, vec3 away, vec3 corner, vec3 edge1, vec3 edge2)
+// What a primitive does to the light between two places.
+const int APART = 0;
+// Only the triangle's plane is between them.
+const int BESIDE = 1;
+const int BETWEEN = 2;
+
+// What the triangle does to the light between a place and another that is `away` from it.
+int triangle_between(vec3 from, vec3 away, vec3 corner, vec3 edge1, vec3 edge2)
 {
     vec3 across = cross(edge1, edge2);
     float size = length(across);
     float before = dot(across, from - corner) / size;
     float after = dot(across, from + away - corner) / size;
     if (before * after >= 0.0 || min(abs(before), abs(after)) <= margin) {
-        return false;
+        return APART;
     }
     vec3 met = from + before / (before - after) * away - corner;
     float second = dot(cross(met, edge2), across) / (size * size);
     float third = dot(cross(edge1, met), across) / (size * size);
     // A little wide, so that neighbours leave no gap.
-    return min(second, third) >= -1e-5 && second + third <= 1.00001;
+    return min(second, third) >= -1e-5 && second + third <= 1.00001 ? BETWEEN : BESIDE;
 }
 
-bool is_behind(vec3 from, vec3 away, int primitive)
+int between(vec3 from, vec3 away, int primitive)
 {
     vec4 first = texel(3 * primitive);
     if (first.w > 0.0) {
-        return is_behind_sphere(from, away, first.xyz, first.w);
+        return is_sphere_between(from, away, first.xyz, first.w) ? BETWEEN : APART;
     }
-    return is_behind_triangle(from, away, first.xyz, texel(3 * primitive + 1).xyz, texel(3 * primitive + 2).xyz);
+    return triangle_between(from, away, first.xyz, texel(3 * primitive + 1).xyz, texel(3 * primitive + 2).xyz);
 }
 
 bool is_lit(vec3 from)
@@ -99,15 +105,22 @@ bool is_lit(vec3 from)
     // A half plane that holds the direction holds the middle of one of the four texels around it.
     ivec2 corner = ivec2(floor((clip.xy / clip.w * 0.5 + 0.5) * vec2(size) - 0.5));
     uint known = 0u;
+    int found = APART;
+    bool is_crack = true;
     for (int index = 0; index < 4; ++index) {
         ivec2 neighbour = clamp(corner + ivec2(index & 1, index >> 1), ivec2(0), size - 1);
         uint primitive = texelFetch(nearest, neighbour, 0).x;
-        if (primitive != known && primitive != 0u && is_behind(from, place - from, int(primitive) - 1)) {
+        if (primitive != known) {
+            found = primitive == 0u ? APART : between(from, place - from, int(primitive) - 1);
+        }
+        if (found == BETWEEN) {
             return false;
         }
         known = primitive;
+        is_crack = is_crack && found == BESIDE;
     }
-    return true;
+    // Where all four see triangles before the pixel, a small one of a mesh was between them: no texel's middle saw it.
+    return !is_crack;
 }
 
 void main()

@@ -58,7 +58,8 @@ impl BounceMaps {
             let map = self.draw(place, face)?;
             for index in mine {
                 let clip = to_clip * (place + group[index].direction).extend(1.0);
-                let texel = (clip.truncate().truncate() / clip.w * 0.5 + 0.5) * UVec2::splat(SIDE.into()).as_vec2();
+                let texel =
+                    (clip.truncate().truncate() / clip.w * 0.5 + 0.5) * UVec2::splat(SIDE.into()).as_vec2();
                 let texel = texel.as_uvec2().min(UVec2::splat(u32::from(SIDE) - 1));
                 hits[index].primitive = map.at(texel.x, texel.y).wrapping_sub(1);
             }

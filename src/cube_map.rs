@@ -83,10 +83,9 @@ impl CubeMap {
         let to_clip = self.to_clip(place, face);
         self.map.clear(&[0]);
         self.map.clear_depth();
-        for (label, program, vertices) in [
-            (TRIANGLES, &self.programs[0], &self.triangles),
-            (SPHERES, &self.programs[1], &self.spheres),
-        ] {
+        for (label, program, vertices) in
+            [(TRIANGLES, &self.programs[0], &self.triangles), (SPHERES, &self.programs[1], &self.spheres)]
+        {
             Pass::new(label, program)
                 .set("to_clip", to_clip)
                 .set("camera", place)

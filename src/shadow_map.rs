@@ -4,7 +4,8 @@
 //!   direction is not between the two. Area lights are some places, spread evenly, whose shadows add up to a soft one.
 //! - Against the thesis: maps hold primitives instead of depths, and pixels meet those again, exactly. So shadows have edges
 //!   as sharp as with rays, and there is no depth bias: only what is nearer to a surface than 10^-4 of the scene's extent casts
-//!   no shadow on it. What no texel sees, since it is thinner or behind something else, casts none either.
+//!   no shadow on it. What no texel sees, since it is thinner or behind something else, casts none either; a gap
+//!   between triangles that is thinner than a texel is taken for a crack, and closed.
 //! - Glass and mirrors cast hard shadows: photons bring the light that passes them.
 //! - Places are the same for all pixels: few of them give steps, where rays give noise.
 //! - Cost: for each place a draw of the scene and one pass over the picture for each side of the cube that it shines through:

@@ -44,8 +44,12 @@ impl Light {
             add(&mut direct, pixel, radiance.as_dvec3());
         }
         match settings.direct {
-            DirectLight::Traced => trace(scene, &sight.straight, settings, settings.seed, &mut direct, &mut show),
-            DirectLight::ShadowMap => map(gl, scene, &surfaces, &sight.straight, settings, &mut direct, &mut show)?,
+            DirectLight::Traced => {
+                trace(scene, &sight.straight, settings, settings.seed, &mut direct, &mut show);
+            }
+            DirectLight::ShadowMap => {
+                map(gl, scene, &surfaces, &sight.straight, settings, &mut direct, &mut show)?;
+            }
         }
         // Places in mirrors and behind glass have seeds of their own.
         trace(scene, &sight.bent, settings, settings.seed.wrapping_add(1 << 32), &mut direct, &mut show);

@@ -77,8 +77,7 @@ fn a_point_lamp_by_hand_and_its_shadow() {
     let lit = spot.values().iter().filter(|value| value[1] > 0.0).count();
     let inside = |place: u32| ((f64::from(place) + 0.5) / 8.0 - 1.0).powi(2);
     let limit = (2.0 * 10.0_f64.to_radians().tan()).powi(2);
-    let expected =
-        (0..256).filter(|index| inside(index % 16) + inside(index / 16) <= limit).count();
+    let expected = (0..256).filter(|index| inside(index % 16) + inside(index / 16) <= limit).count();
     assert_eq!(lit, expected);
 }
 
@@ -87,7 +86,8 @@ fn a_point_lamp_by_hand_and_its_shadow() {
 #[test]
 fn a_ball_and_its_shadow_are_those_of_rays() {
     let gl = egl();
-    let ball = "[surfaces.ball]\nmaterial = \"white\"\nspheres = [{ centre = [0.5, 0, -0.7], radius = 0.25 }]";
+    let ball =
+        "[surfaces.ball]\nmaterial = \"white\"\nspheres = [{ centre = [0.5, 0, -0.7], radius = 0.25 }]";
     let lamp = POINT.replace("[0, 0, 1]", "[-1.5, 0.3, 0.2]");
     let scene = lamp_and_wall(&lamp, ball);
     let [traced, mapped] = [DirectLight::Traced, DirectLight::ShadowMap]
@@ -104,31 +104,23 @@ fn differing(a: &Image<[f32; 3]>, b: &Image<[f32; 3]>, share: f32) -> usize {
     pairs.filter(|(a, b)| (a[1] - b[1]).abs() > share * a[1].max(b[1])).count()
 }
 
-/// Point lamps, pixel by pixel; away from the edges of shadows and of what casts them, without exception.
+/// Point lamps, pixel by pixel: 5 of 32768 differ, below small triangles of the ring's mesh.
 #[test]
 fn shipped_scenes_with_point_lamps_are_those_of_rays() {
     let gl = egl();
-    for (name, at_edges) in [("mirror-ring", 200), ("water", 30)] {
+    for name in ["mirror-ring", "water"] {
         let scene = Scene::shipped(name).unwrap();
         let [traced, mapped] = [DirectLight::Traced, DirectLight::ShadowMap]
-            .map(|direct| picture(&gl, &scene, 128, direct, 1));
-        let (mut edges, mut others) = (0, 0);
-        for y in 1..127 {
-            for x in 1..127 {
-                let [a, b] = [&traced, &mapped].map(|layers| layers.direct.at(x, y)[1]);
-                if (a - b).abs() > 1e-3 * a.max(b) {
-                    let around = (0..9).map(|index| traced.direct.at(x + index % 3 - 1, y + index / 3 - 1)[1]);
-                    let is_edge = around.clone().any(|value| value == 0.0) && around.clone().any(|value| value > 0.0);
-                    if is_edge { edges += 1 } else { others += 1; eprintln!("{name} {x} {y}: {a} {b}") }
-                }
-            }
-        }
-        eprintln!("{name}: {edges} {others}");
-        assert!(others == 0 && edges <= at_edges, "{name}: {edges} at edges, {others} elsewhere");
+            .map(|direct| picture(&gl, &scene, 128, direct, 1).direct);
+        let differ = differing(&traced, &mapped, 1e-3);
+        assert!(differ <= 10, "{name}: {differ} of 16384 pixels");
+        let unlit = traced.map(|_| [0.0; 3]);
+        assert!(differing(&traced, &unlit, 1e-3) > 1000, "{name} is lit");
     }
 }
 
-/// Area lights: 64 places that all pixels share, against 1024 rays a pixel to places of their own.
+/// Area lights: 64 places that all pixels share, against 1024 rays a pixel to places of their own. Measured: 0.15, 0.40 and
+/// 0.44 % of the light differ; of the pixels, up to 1.7 % by more than a tenth, all in penumbrae.
 #[test]
 fn soft_shadows_are_those_of_many_rays() {
     let gl = egl();
@@ -137,25 +129,26 @@ fn soft_shadows_are_those_of_many_rays() {
     for name in ["cornell-empty", "cornell-boxes", "cornell-glass"] {
         let rays = many(name);
         let maps = picture(&gl, &Scene::shipped(name).unwrap(), 64, DirectLight::ShadowMap, 64);
-        let straight = |index: &usize| rays.albedo.values()[*index] != [0.0; 3];
+        let straight = |index: &usize| rays.albedo.values()[*index][1] > 0.0;
         let apart = |a: &Layers, b: &Layers, chosen: &dyn Fn(&usize) -> bool| -> (f64, f64) {
             let pixels: Vec<usize> = (0..64 * 64).filter(|index| straight(index) && chosen(index)).collect();
             let green = |layers: &Layers, index: &usize| f64::from(layers.direct.values()[*index][1]);
             let mean = pixels.iter().map(|index| green(a, index)).sum::<f64>();
             let differences = pixels.iter().map(|index| (green(a, index) - green(b, index)).abs());
-            let far = differences.clone().zip(&pixels).filter(|(d, i)| *d > 0.1 * green(a, i).max(1e-9)).count();
+            let far =
+                differences.clone().zip(&pixels).filter(|(d, i)| *d > 0.1 * green(a, i).max(1e-9)).count();
             #[expect(clippy::cast_precision_loss, reason = "few pixels")]
             let share = far as f64 / pixels.len() as f64;
             (differences.sum::<f64>() / mean, share)
         };
         let (mean, far) = apart(&rays, &maps, &|_| true);
-        eprintln!("{name}: {mean} {far}");
-        assert!(mean < 0.01 && far < 0.03, "{name}: mean {mean}, {far} of the pixels by over a tenth");
+        assert!(mean < 0.006 && far < 0.025, "{name}: mean {mean}, {far} of the pixels by over a tenth");
         if name != "cornell-empty" {
             // Without its occluders, on pixels that show the room in both.
-            let room = |index: &usize| (rays.depth.values()[*index] / empty.depth.values()[*index] - 1.0).abs() < 1e-4;
-            let (planted, far) = apart(&maps, &empty, &room);
-            eprintln!("{name}: planted {planted} {far}");
+            let room = |index: &usize| {
+                (rays.depth.values()[*index] / empty.depth.values()[*index] - 1.0).abs() < 1e-4
+            };
+            let (planted, _) = apart(&maps, &empty, &room);
             assert!(planted > 0.05, "{name}: {planted}");
         }
     }
@@ -172,7 +165,10 @@ fn sizes_do_not_matter_and_nothing_is_lit_from_behind() {
         assert_eq!(layers.direct.size(), UVec2::splat(size));
         assert!(layers.direct.values().iter().flatten().all(|&value| value == 0.0));
     }
-    let turned = lamp.replace("[-1, -1, 1], [1, -1, 1], [1, 1, 1], [-1, 1, 1]", "[-1, 1, 1], [1, 1, 1], [1, -1, 1], [-1, -1, 1]");
+    let turned = lamp.replace(
+        "[-1, -1, 1], [1, -1, 1], [1, 1, 1], [-1, 1, 1]",
+        "[-1, 1, 1], [1, 1, 1], [1, -1, 1], [-1, -1, 1]",
+    );
     let lit = picture(&gl, &lamp_and_wall(&turned, ""), 7, DirectLight::ShadowMap, 3);
     assert!(lit.direct.values().iter().flatten().all(|&value| value > 0.0));
 }
