@@ -5,6 +5,8 @@ pub mod bench;
 mod difference;
 #[cfg(feature = "render")]
 mod picture;
+#[cfg(feature = "render")]
+mod point_pass;
 #[cfg(feature = "report")]
 pub mod report;
 #[cfg(feature = "report")]
@@ -20,6 +22,8 @@ mod unit_pass;
 pub use difference::{Difference, Place};
 #[cfg(feature = "render")]
 pub use picture::PictureError;
+#[cfg(feature = "render")]
+pub use point_pass::PointPass;
 pub use statistics::Statistics;
 pub use summary::{RadiusSummary, total_photons};
 pub use unit_pass::{Unit, UnitPass};

@@ -10,10 +10,12 @@ mod nearest;
 mod reference;
 mod seen_through;
 mod sight;
+mod stages;
 mod traced;
 
 pub use layers::{Account, Layers};
 pub use reference::Reference;
+pub use stages::Stages;
 pub use traced::first_hits;
 
 use glam::{DVec3, UVec2, Vec3};

@@ -86,7 +86,9 @@ fn all_sources() -> Vec<ShaderSource> {
         }
     }
     #[cfg(feature = "render")]
-    for source in varikernel::render::shader_sources() {
+    for source in
+        varikernel::render::shader_sources().into_iter().chain([varikernel::measure::PointPass::source()])
+    {
         sources.insert(source.vertex() + &source.fragment(), source);
     }
     sources.into_values().collect()
