@@ -96,7 +96,7 @@ impl<'a> Rows<'a> {
 
     pub(super) fn run(&mut self, timer: &mut Timer, work: Work) -> Result<Sample> {
         let stages = &mut self.stages;
-        let timed = match work {
+        let result = match work {
             Work::Points => timer.time(|| self.points.run(stages.photons())),
             Work::Density => timer.time(|| stages.count()),
             Work::Radius => timer.time(|| stages.search()),
@@ -111,7 +111,7 @@ impl<'a> Rows<'a> {
                 Ok(((), Sample { query: wall, wall }))
             }
         };
-        timed.map(|((), sample)| sample)
+        result.map(|((), sample)| sample)
     }
 
     /// Runs a row untimed, after all rows before it. Whether its answer is right; nothing if there is no other to hold it against.
