@@ -45,7 +45,8 @@
 //! | `cli`, `main` | the program, built on the public library: one file a verb |
 //! | [`measure`] | how right and how fast a result is: differences, errors of pictures, their study (`study`), timing runs (`bench`), rivals on the processor (`rivals`), the thesis's tables and claims (`thesis`), both together (`reproduce`), a page of them (`report`) |
 //! | `render` | scene in, picture out: the stages of a picture in order, soft shadows, what is seen in mirrors and through glass |
-//! | `bounce_map`, `gbuffer`, `density`, `splat`, `shade` | a stage of a picture each: what photons meet first, what pixels show, photons counted, kernels drawn, light added up |
+//! | `bounce_map`, `gbuffer`, `shadow_map`, `density`, `splat`, `shade` | a stage of a picture each: what photons meet first, what pixels show, direct light, photons counted, kernels drawn, light added up |
+//! | `cube_map` | what is nearest around a place, rasterised |
 //! | `adaptive` | [`AdaptivePipeline`]: plans each frame by the photons of the ones before |
 //! | [`planner`] | which table, build and search suit a map |
 //! | [`pipeline`] | the stages in order; what a host calls |
@@ -100,6 +101,8 @@ pub mod certificate;
 #[cfg(any(feature = "egl", feature = "osmesa"))]
 pub mod context;
 #[cfg(feature = "render")]
+mod cube_map;
+#[cfg(feature = "render")]
 mod density;
 mod driver_limits;
 pub mod error;
@@ -125,6 +128,8 @@ pub mod scene;
 pub mod settings;
 #[cfg(feature = "render")]
 mod shade;
+#[cfg(feature = "render")]
+mod shadow_map;
 #[cfg(feature = "render")]
 mod splat;
 pub mod structure;

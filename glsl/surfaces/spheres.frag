@@ -1,6 +1,5 @@
 // Place, normal and albedo where the line of sight meets a sphere: exact, not as triangles. From a light, which sphere.
 uniform vec3 camera;
-uniform mat4 to_clip;
 
 in vec3 at;
 flat in vec3 centre;
@@ -9,8 +8,12 @@ flat in float radius;
 flat in float number;
 
 #ifdef PRIMITIVES
+// A distance beyond everything.
+uniform float far;
+
 layout(location = 0) out uint primitive;
 #else
+uniform mat4 to_clip;
 uniform vec3 view_direction;
 
 layout(location = 0) out vec4 position;
@@ -33,12 +36,13 @@ void main()
     if (nearest <= 0.0) {
         discard;
     }
+#ifdef PRIMITIVES
+    primitive = uint(number + 0.5);
+    gl_FragDepth = min(nearest / far, 1.0);
+#else
     vec3 place = camera + nearest * sight;
     vec4 clip = to_clip * vec4(place, 1.0);
     gl_FragDepth = clip.z / clip.w * 0.5 + 0.5;
-#ifdef PRIMITIVES
-    primitive = uint(number + 0.5);
-#else
     vec3 outward = (place - centre) / radius;
     position = vec4(place, dot(place - camera, view_direction));
     normal = vec4(dot(outward, sight) > 0.0 ? -outward : outward, number);

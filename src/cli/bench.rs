@@ -1,5 +1,6 @@
 //! `varikernel bench`: how fast each method is on this machine.
 
+mod picture;
 mod rivals;
 mod table;
 mod targets;
@@ -27,20 +28,25 @@ use super::Outcome;
 /// texel once. A method whose answer is wrong gets no rank.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
-    /// Time a fixed set of maps and cases, and judge its targets: with --sizes, --build-sizes and --rivals as the only
-    /// choices.
+    /// Time a fixed set of cases, and judge its targets. Of the choices below, `fast` takes --sizes, --build-sizes and
+    /// --rivals, `picture` one size and --photons.
     #[arg(long, value_enum, conflicts_with_all = FIXED_BY_SUITE)]
     suite: Option<SuiteName>,
 
-    /// Sizes of synthetic maps: sides, or WIDTHxHEIGHT; files have their own [default for a suite: 1024].
+    /// Sizes of synthetic maps: sides, or WIDTHxHEIGHT; files have their own [default for suites: 1024 and 512].
     #[arg(long, value_delimiter = ',', default_value = "64,128,256,512", value_parser = parse_size,
-          default_value_if("suite", clap::builder::ArgPredicate::IsPresent, "1024"))]
+          default_value_ifs([("suite", "fast", "1024"), ("suite", "picture", "512")]))]
     sizes: Vec<UVec2>,
 
     /// Sizes of a suite's maps on which builds alone are timed.
     #[arg(long, value_delimiter = ',', default_value = "64,128,256,512,1024,2048", value_parser = parse_size,
           requires = "suite")]
     build_sizes: Vec<UVec2>,
+
+    /// Photons of --suite picture that are traced and drawn.
+    #[arg(long, default_value = "1e6", value_parser = super::photons::parse_count, requires = "suite",
+          value_name = "NUMBER")]
+    photons: u32,
 
     /// Map to time with, again for more: a kind of `varikernel synth`, or an EXR, PNG or NPY file of counts.
     #[arg(long = "map", value_name = "FILE|KIND", default_value = "caustic")]
@@ -93,7 +99,7 @@ pub(crate) struct Args {
     #[arg(long, value_enum, default_value_t = ProtocolName::Short)]
     protocol: ProtocolName,
 
-    /// Time to share out among all cases, such as 90s or 5m [default: 60s, 3m for a suite, or 10m for the thesis's
+    /// Time to share out among all cases, such as 90s or 5m [default: 60s, 3m for --suite fast, or 10m for the thesis's
     /// protocol].
     #[arg(long, value_parser = humantime::parse_duration)]
     budget: Option<Duration>,
@@ -138,6 +144,8 @@ const FIXED_BY_SUITE: [&str; 9] = [
 enum SuiteName {
     /// What the fast path costs, on five kinds of maps, against copies and the thesis's best.
     Fast,
+    /// What the stages of a picture cost in the glass Cornell box, against its photons drawn as points.
+    Picture,
 }
 
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]
@@ -152,6 +160,9 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     if let Some([old, new]) = args.compare.as_deref() {
         table::print_comparison(&Report::load(old)?, &Report::load(new)?)?;
         return Ok(Outcome::Done);
+    }
+    if let Some(SuiteName::Picture) = args.suite {
+        return picture::run(args);
     }
     // What can be refused without timing is refused first.
     let json = args.json.as_ref().or(args.resume.as_ref());

@@ -1,5 +1,7 @@
 //! `varikernel figures`: the thesis's Figures 1.2 to 1.4 and ours, on one sheet with their errors.
 
+mod regions;
+
 use std::fs;
 use std::io::Write;
 use std::path::PathBuf;
@@ -10,13 +12,14 @@ use varikernel::context;
 use varikernel::image::{
     Picture, Tile, check_writable, contact_sheet, picture_of, write_atomically, write_colours,
 };
-use varikernel::measure::PictureError;
+use varikernel::measure::{LightError, PictureError};
 use varikernel::photon::TraceSettings;
 use varikernel::render::{Layers, Progress, Reference, Renderer};
 use varikernel::scene::Scene;
 use varikernel::settings::{MAX_PICTURE_RADIUS, PictureSettings, RadiusChoice};
 use varikernel::{Gl, Image};
 
+use self::regions::{RegionErrors, Regions};
 use super::photons::load;
 use super::render::{Bar, Source, in_words_of_options};
 use super::{Outcome, output};
@@ -30,7 +33,8 @@ const TOO_LARGE: u32 = 4;
 ///
 /// Draws one scene with the best fixed radius (Figure 1.2), one four times as large (1.3), one pixel (1.4), and
 /// variable ones, from the same photons. Errors are those of indirect light against a reference: the photons of each pixel
-/// alone, averaged over other seeds. The folder gets figures.png, figures.json and each picture.
+/// alone, averaged over other seeds; they are also told for the caustics alone, where the reference's indirect irradiance is
+/// more than three times its median, and for the other diffuse pixels, the walls. The folder gets figures.png, figures.json and each picture.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
     #[command(flatten)]
@@ -55,7 +59,18 @@ struct Figure {
     name: &'static str,
     radius: RadiusChoice,
     error: PictureError,
+    #[serde(flatten)]
+    regions: RegionErrors,
     energy_error: f64,
+}
+
+/// A fixed radius that was tried.
+#[derive(Serialize)]
+struct FixedRadius {
+    radius: u32,
+    error: PictureError,
+    #[serde(flatten)]
+    regions: RegionErrors,
 }
 
 /// What figures.json says.
@@ -70,8 +85,11 @@ struct Report {
     /// How far two halves of the reference's seeds are apart, halved: its own noise. SSIM and FLIP are of the halves.
     reference_noise: PictureError,
     figures: Vec<Figure>,
-    /// Every fixed radius that was tried: from 1 up to the first that is worse than the one before by both measures.
-    fixed: Vec<(u32, PictureError)>,
+    /// Pixels of the caustics, and of the walls.
+    region_pixels: [usize; 2],
+    /// Every fixed radius that was tried: from 1 up to the first that is worse than the one before by both measures, in the
+    /// whole picture and on the walls.
+    fixed: Vec<FixedRadius>,
 }
 
 pub(crate) fn run(args: &Args) -> Result<Outcome> {
@@ -97,18 +115,24 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     // All pictures are as bright as suits the reference.
     let tone_map = source.tone_map(&beauty);
     let indirect = mean(&halves[0].indirect, &halves[1].indirect);
-    let apart = PictureError::between(&halves[0].indirect, &halves[1].indirect);
+    let [first, second] = &halves;
+    let apart = PictureError::of_light_and_sight(
+        [&first.indirect, &second.indirect],
+        [&first.beauty, &second.beauty],
+    );
     let reference_noise =
         PictureError { rmse: apart.rmse / 2.0, relative_mse: apart.relative_mse / 4.0, ..apart };
 
     let renderer = Renderer::new(&gl, &scene, &settings, &trace, &mut |progress| bar.show(progress))
         .map_err(in_words_of_options)?;
-    let mut studio = Studio { renderer, settings, reference: indirect };
+    let regions = Regions::new(&halves[0].albedo, &mean(&halves[0].irradiance, &halves[1].irradiance));
+    let region_pixels = regions.sizes();
+    let mut studio = Studio { renderer, settings, indirect, beauty: beauty.clone(), regions };
     let fixed = studio.fixed_radii(&bar)?;
     let best = fixed
         .iter()
-        .min_by(|(_, a), (_, b)| a.rmse.total_cmp(&b.rmse))
-        .map_or_else(|| unreachable!("at least one radius was tried"), |(radius, _)| *radius);
+        .min_by(|a, b| a.error.rmse.total_cmp(&b.error.rmse))
+        .map_or_else(|| unreachable!("at least one radius was tried"), |best| best.radius);
     let too_large = (best * TOO_LARGE).min(MAX_PICTURE_RADIUS);
     let (mut figures, mut tiles) = (Vec::new(), Vec::new());
     for (name, file, radius) in [
@@ -144,6 +168,7 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
         reference_seeds: args.reference_seeds,
         reference_noise,
         figures,
+        region_pixels,
         fixed,
     };
     let text = serde_json::to_string_pretty(&report)?;
@@ -180,27 +205,39 @@ fn references(args: &Args, gl: &Gl, scene: &Scene, bar: &Bar) -> varikernel::Res
 struct Studio {
     renderer: Renderer,
     settings: PictureSettings,
-    /// Indirect light.
-    reference: Image<[f32; 3]>,
+    /// Of the reference.
+    indirect: Image<[f32; 3]>,
+    beauty: Image<[f32; 3]>,
+    regions: Regions,
 }
 
 impl Studio {
     fn draw(&mut self, name: &'static str, radius: RadiusChoice) -> Result<(Layers, Figure)> {
         let (layers, account) = self.renderer.picture(&PictureSettings { radius, ..self.settings })?;
-        let error = PictureError::between(&layers.indirect, &self.reference);
-        Ok((layers, Figure { name, radius, error, energy_error: account.energy_error() }))
+        let error = PictureError::of_light_and_sight(
+            [&layers.indirect, &self.indirect],
+            [&layers.beauty, &self.beauty],
+        );
+        let regions = self.regions.errors(&layers.indirect, &self.indirect);
+        Ok((layers, Figure { name, radius, error, regions, energy_error: account.energy_error() }))
     }
 
     /// The errors of fixed radii, as far as it makes sense.
-    fn fixed_radii(&mut self, bar: &Bar) -> Result<Vec<(u32, PictureError)>> {
-        let mut fixed: Vec<(u32, PictureError)> = Vec::new();
+    fn fixed_radii(&mut self, bar: &Bar) -> Result<Vec<FixedRadius>> {
+        let mut fixed: Vec<FixedRadius> = Vec::new();
         for radius in RADII {
             bar.show(Progress { stage: "fixed radii", done: f64::from(radius) / 32.0 });
-            let error = self.draw("", RadiusChoice::Fixed(radius))?.1.error;
-            let is_past = fixed.last().is_some_and(|(_, before)| {
-                error.rmse > before.rmse && error.relative_mse > before.relative_mse
+            let Figure { error, regions, .. } = self.draw("", RadiusChoice::Fixed(radius))?.1;
+            let is_past = fixed.last().is_some_and(|before| {
+                let walls = regions.walls.zip(before.regions.walls);
+                let all_worse =
+                    error.rmse > before.error.rmse && error.relative_mse > before.error.relative_mse;
+                let walls_worse = |(now, before): (LightError, LightError)| {
+                    now.rmse > before.rmse && now.relative_mse > before.relative_mse
+                };
+                all_worse && walls.is_none_or(walls_worse)
             });
-            fixed.push((radius, error));
+            fixed.push(FixedRadius { radius, error, regions });
             // Wide kernels take long, and the error only grows from there on.
             if is_past {
                 break;
@@ -215,7 +252,14 @@ fn caption(figure: &Figure, min_photons: u32) -> Vec<String> {
         RadiusChoice::Fixed(radius) => format!("radius {radius}"),
         RadiusChoice::Variable => format!("n = {min_photons}"),
     };
-    vec![format!("{}: {width}", figure.name), errors(figure.error)]
+    let rmse =
+        |error: Option<LightError>| error.map_or_else(|| "-".to_owned(), |of| format!("{:.5}", of.rmse));
+    let RegionErrors { caustic, walls } = figure.regions;
+    vec![
+        format!("{}: {width}", figure.name),
+        errors(figure.error),
+        format!("caustic {} walls {}", rmse(caustic), rmse(walls)),
+    ]
 }
 
 fn errors(PictureError { rmse, relative_mse, .. }: PictureError) -> String {
@@ -230,15 +274,19 @@ fn mean(a: &Image<[f32; 3]>, b: &Image<[f32; 3]>) -> Image<[f32; 3]> {
 }
 
 fn print(report: &Report, args: &Args) -> Result<()> {
-    let mut rows = vec![["picture", "RMSE", "relative MSE", "SSIM", "FLIP"].map(str::to_owned)];
-    let row = |name: &str, error: PictureError| {
+    let names = ["picture", "RMSE", "rel. MSE", "SSIM", "FLIP", "caustic", "walls"];
+    let mut rows = vec![names.map(str::to_owned)];
+    let row = |name: &str, error: PictureError, RegionErrors { caustic, walls }: RegionErrors| {
+        let number = |value: f64| format!("{value:.4}");
+        let region = |error: Option<LightError>| error.map_or_else(String::new, |of| number(of.rmse));
         let PictureError { rmse, relative_mse, ssim, flip } = error;
-        let numbers = [rmse, relative_mse, ssim, flip].map(|value| format!("{value:.5}"));
-        let [rmse, relative_mse, ssim, flip] = numbers;
-        [name.to_owned(), rmse, relative_mse, ssim, flip]
+        let [rmse, relative_mse, ssim, flip] = [rmse, relative_mse, ssim, flip].map(number);
+        [name.to_owned(), rmse, relative_mse, ssim, flip, region(caustic), region(walls)]
     };
-    rows.extend(report.figures.iter().map(|figure| row(figure.name, figure.error)));
-    rows.push(row("Reference's own noise", report.reference_noise));
+    rows.extend(report.figures.iter().map(|figure| row(figure.name, figure.error, figure.regions)));
+    rows.extend(report.fixed.iter().map(|of| row(&format!("Radius {}", of.radius), of.error, of.regions)));
+    let nowhere = RegionErrors { caustic: None, walls: None };
+    rows.push(row("Reference's own noise", report.reference_noise, nowhere));
     output::print_rows(&rows)?;
     output::print(&format!("written: {}", args.output.join("figures.png").display()))
 }

@@ -75,6 +75,14 @@ impl SurfaceMaps {
             .set("to_clip", self.view.to_clip())
     }
 
+    pub(crate) fn position(&self) -> &Texture {
+        &self.target.textures()[0]
+    }
+
+    pub(crate) fn normal(&self) -> &Texture {
+        &self.target.textures()[1]
+    }
+
     pub(crate) fn albedo(&self) -> &Texture {
         &self.target.textures()[2]
     }

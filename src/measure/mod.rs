@@ -9,6 +9,8 @@ mod confidence;
 mod difference;
 #[cfg(feature = "render")]
 mod picture;
+#[cfg(feature = "render")]
+mod point_pass;
 #[cfg(feature = "report")]
 pub mod report;
 #[cfg(feature = "report")]
@@ -27,7 +29,9 @@ mod unit_pass;
 pub use confidence::{CONFIDENCE_LEVEL, Confidence, RatioInterval};
 pub use difference::{Difference, Place};
 #[cfg(feature = "render")]
-pub use picture::PictureError;
+pub use picture::{LightError, PictureError};
+#[cfg(feature = "render")]
+pub use point_pass::PointPass;
 pub use statistics::Statistics;
 pub use summary::{RadiusSummary, total_photons};
 pub use unit_pass::{Unit, UnitPass};

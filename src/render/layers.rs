@@ -17,7 +17,7 @@ pub struct Layers {
     pub density: Image<f32>,
     /// R, in pixels.
     pub radius: Image<u32>,
-    /// 1 where MR ended the search with too few photons, else 0.
+    /// 1 where MR ended the search with too few photons, else 0; with a fixed radius nothing is searched, and all are 0.
     pub limited: Image<u8>,
     /// Of length 1 towards the camera; 0 where nothing is seen.
     pub normal: Image<[f32; 3]>,
@@ -45,7 +45,7 @@ pub struct Account {
     pub power_out: [f64; 3],
     /// Fragments that the splat drew; photons that the gather found.
     pub fragments: f64,
-    /// Share of pixels on diffuse surfaces whose search MR ended.
+    /// Share of pixels on diffuse surfaces whose search MR ended; 0 with a fixed radius, which asks for no search.
     pub limited_share: f64,
 }
 

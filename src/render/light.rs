@@ -14,8 +14,9 @@ use crate::gl::Gl;
 use crate::image::Image;
 use crate::maps::SurfaceMaps;
 use crate::scene::Scene;
-use crate::settings::PictureSettings;
+use crate::settings::{DirectLight, PictureSettings};
 use crate::shade::TracedLight;
+use crate::shadow_map::ShadowMaps;
 use crate::view::View;
 
 /// All that needs no photons.
@@ -37,51 +38,80 @@ impl Light {
         let surfaces = SurfaceStage::new(gl)?.draw(scene, view)?;
         progress(Progress { stage: "direct light", done: 0.0 });
         let sight = Sight::new(scene, &view);
-        let light = direct_light(scene, &view, &sight, settings, progress);
-        Ok(Self { surfaces, traced: light, bent: sight.bent })
+        let mut show = |done| progress(Progress { stage: "direct light", done });
+        let mut direct = Image::filled(settings.size, [0.0; 4]);
+        for &(pixel, radiance) in &sight.lights {
+            add(&mut direct, pixel, radiance.as_dvec3());
+        }
+        match settings.direct {
+            DirectLight::Traced => {
+                trace(scene, &sight.straight, settings, settings.seed, &mut direct, &mut show);
+            }
+            DirectLight::ShadowMap => {
+                map(gl, scene, &surfaces, &sight.straight, settings, &mut direct, &mut show)?;
+            }
+        }
+        // Places in mirrors and behind glass have seeds of their own.
+        trace(scene, &sight.bent, settings, settings.seed.wrapping_add(1 << 32), &mut direct, &mut show);
+        for place in &sight.straight {
+            let (x, y) = (place.pixel % settings.size.x, place.pixel / settings.size.x);
+            let [red, green, blue, _] = direct.at(x, y);
+            direct.set(x, y, [red, green, blue, 1.0]);
+        }
+        let seen_through = Image::filled(settings.size, [0.0; 4]);
+        Ok(Self { surfaces, traced: TracedLight { direct, seen_through }, bent: sight.bent })
     }
 }
 
-/// Direct light at every place that is seen, in rows so that the progress can be told.
-fn direct_light(
+/// Adds the light at places by shadow rays, in parts so that the progress can be told.
+fn trace(
     scene: &Scene,
-    view: &View,
-    sight: &Sight,
+    places: &[Place],
     settings: &PictureSettings,
-    progress: &mut dyn FnMut(Progress),
-) -> TracedLight {
-    let mut direct = Image::filled(view.size(), [0.0; 4]);
-    for &(pixel, radiance) in &sight.lights {
-        add(&mut direct, pixel, radiance.as_dvec3());
-    }
-    let places = sight.straight.len() + sight.bent.len();
+    seed: u64,
+    direct: &mut Image<[f32; 4]>,
+    show: &mut dyn FnMut(f64),
+) {
     let mut done = 0;
-    for (list, seed) in [(&sight.straight, settings.seed), (&sight.bent, settings.seed.wrapping_add(1 << 32))]
-    {
-        for (number, part) in (0..).zip(list.chunks(1 << 14)) {
-            let found: Vec<DVec3> = part
-                .par_iter()
-                .enumerate()
-                .map(|(index, place)| {
-                    let index = u32::try_from(index).expect("a part is small");
-                    let mut dice = Dice::new(seed, (number << 14) + index);
-                    let samples = settings.light_samples;
-                    let arrives = direct::irradiance(scene, place.position, place.normal, samples, &mut dice);
-                    place.share.as_dvec3() * arrives / PI
-                })
-                .collect();
-            for (place, radiance) in part.iter().zip(found) {
-                add(&mut direct, place.pixel, radiance);
-            }
-            done += part.len();
-            #[expect(clippy::cast_precision_loss, reason = "a share")]
-            progress(Progress { stage: "direct light", done: done as f64 / places as f64 });
+    for (number, part) in (0..).zip(places.chunks(1 << 14)) {
+        let found: Vec<DVec3> = part
+            .par_iter()
+            .enumerate()
+            .map(|(index, place)| {
+                let index = u32::try_from(index).expect("a part is small");
+                let mut dice = Dice::new(seed, (number << 14) + index);
+                let samples = settings.light_samples;
+                direct::irradiance(scene, place.position, place.normal, samples, &mut dice)
+            })
+            .collect();
+        for (place, arrives) in part.iter().zip(found) {
+            add(direct, place.pixel, place.share.as_dvec3() * arrives / PI);
         }
+        done += part.len();
+        #[expect(clippy::cast_precision_loss, reason = "a share")]
+        show(done as f64 / places.len() as f64);
     }
-    for place in &sight.straight {
-        let (x, y) = (place.pixel % view.size().x, place.pixel / view.size().x);
-        let [red, green, blue, _] = direct.at(x, y);
-        direct.set(x, y, [red, green, blue, 1.0]);
+}
+
+/// Adds the light at places that are seen straight by shadow maps.
+fn map(
+    gl: &Gl,
+    scene: &Scene,
+    surfaces: &SurfaceMaps,
+    places: &[Place],
+    settings: &PictureSettings,
+    direct: &mut Image<[f32; 4]>,
+    show: &mut dyn FnMut(f64),
+) -> Result<()> {
+    let mut dice = Dice::new(settings.seed, 0);
+    let mut number = || dice.number();
+    let lights = scene.lights().iter();
+    let lights: Vec<_> = lights.flat_map(|light| light.places(settings.light_samples, &mut number)).collect();
+    let irradiance = ShadowMaps::new(gl, scene, surfaces.size())?.irradiance(surfaces, &lights, show)?;
+    for place in places {
+        let (x, y) = (place.pixel % settings.size.x, place.pixel / settings.size.x);
+        let [red, green, blue, _] = irradiance.at(x, y).map(f64::from);
+        add(direct, place.pixel, place.share.as_dvec3() * DVec3::new(red, green, blue) / PI);
     }
-    TracedLight { direct, seen_through: Image::filled(view.size(), [0.0; 4]) }
+    Ok(())
 }

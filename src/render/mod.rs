@@ -10,15 +10,17 @@ mod nearest;
 mod reference;
 mod seen_through;
 mod sight;
+mod stages;
 mod traced;
 
 pub use layers::{Account, Layers};
 pub use reference::Reference;
+pub use stages::Stages;
 pub use traced::first_hits;
 
 use glam::{DVec3, UVec2, Vec3};
 
-use crate::bounce_map;
+use crate::cube_map;
 use crate::density::{self, DensityStage};
 use crate::error::Result;
 use crate::frame::{Changed, Frame};
@@ -31,6 +33,7 @@ use crate::pipeline::RadiusPipeline;
 use crate::scene::Scene;
 use crate::settings::{Estimate, Kernel, PictureSettings, RadiusChoice, Search, Settings};
 use crate::shade::{self, ShadeStage, TracedLight};
+use crate::shadow_map;
 use crate::splat::{self, GatherStage, SplatStage};
 use crate::view::View;
 use light::Light;
@@ -146,17 +149,18 @@ impl Renderer {
     pub fn picture(&mut self, settings: &PictureSettings) -> Result<(Layers, Account)> {
         settings.validate()?;
         let density = self.density.map()?;
-        let mut pipeline = self.radius_pipeline(settings, &density)?;
-        // The photons are those of the picture before, if there was one.
-        let radii = pipeline.update(&Frame { changed: Changed::Nothing, ..Frame::new(&density) })?;
-        let (chosen, fixed) = match settings.radius {
-            RadiusChoice::Variable => (ChosenRadius::Map(radii), false),
-            RadiusChoice::Fixed(radius) => (ChosenRadius::Fixed(radius), true),
+        let mut searched = None;
+        let (chosen, width) = match settings.radius {
+            RadiusChoice::Fixed(radius) => (ChosenRadius::Fixed(radius), Wanted::Fixed(radius)),
+            RadiusChoice::Variable => {
+                let pipeline = searched.insert(self.radius_pipeline(settings, &density)?);
+                // The photons are those of the picture before, if there was one.
+                let frame = Frame { changed: Changed::Nothing, ..Frame::new(&density) };
+                let radii = pipeline.update(&frame)?;
+                (ChosenRadius::Map(radii), Wanted::Holding(settings.min_photons, settings.max_radius))
+            }
         };
-        let width = match settings.radius {
-            RadiusChoice::Variable => Wanted::Holding(settings.min_photons, settings.max_radius),
-            RadiusChoice::Fixed(radius) => Wanted::Fixed(radius),
-        };
+        let fixed = matches!(chosen, ChosenRadius::Fixed(_));
         self.light.seen_through =
             seen_through(self.surfaces.view(), &self.bent, self.traced.grid.as_ref(), width, settings.kernel);
         let mut shade = ShadeStage::new(&self.gl, self.size)?;
@@ -175,11 +179,13 @@ impl Renderer {
         };
 
         let (position, normal) = (self.surfaces.read_position()?, self.surfaces.read_normal()?);
-        let radius = match settings.radius {
-            RadiusChoice::Variable => radii.read()?,
-            RadiusChoice::Fixed(radius) => Image::filled(self.size, radius),
+        let (radius, limited) = match chosen {
+            ChosenRadius::Fixed(radius) => (Image::filled(self.size, radius), Image::filled(self.size, 0)),
+            ChosenRadius::Map(radii) => {
+                let limited = radii.read_limited()?;
+                (radii.read()?, limited.unwrap_or_else(|| unreachable!("the settings ask for the mask")))
+            }
         };
-        let limited = radii.read_limited()?.unwrap_or_else(|| unreachable!("the settings ask for the mask"));
         let layers = Layers {
             beauty: shaded.beauty.map(rgb),
             direct: self.light.direct.map(rgb),
@@ -193,7 +199,7 @@ impl Renderer {
             albedo: self.surfaces.read_albedo()?.map(rgb),
         };
         let account = self.account(&position, &normal, &irradiance, &layers.limited)?;
-        self.radii = Some(pipeline);
+        self.radii = searched.or(self.radii.take());
         Ok((layers, account))
     }
 
@@ -277,8 +283,8 @@ fn rgb([red, green, blue, _]: [f32; 4]) -> [f32; 3] {
 /// Every shader that a picture may compile beside those of the radius map.
 #[must_use]
 pub fn shader_sources() -> Vec<ShaderSource> {
-    let mut sources = vec![density::source(), shade::source()];
-    sources.extend(bounce_map::sources());
+    let mut sources = vec![density::source(), shade::source(), shadow_map::source()];
+    sources.extend(cube_map::sources());
     sources.extend(gbuffer::sources());
     for kernel in Kernel::ALL {
         for fixed in [false, true] {

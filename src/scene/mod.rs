@@ -11,6 +11,8 @@ mod format;
 mod geometry;
 mod intersect;
 mod light;
+#[cfg(feature = "render")]
+mod light_place;
 mod material;
 mod mesh;
 mod shipped;
@@ -22,6 +24,8 @@ pub use geometry::{Geometry, Sphere, Triangle, Vertex};
 pub use intersect::{Ray, TriangleEdges, intersect_sphere};
 pub(crate) use light::cap_height;
 pub use light::{Light, LightShape, area};
+#[cfg(feature = "render")]
+pub(crate) use light_place::LightPlace;
 pub use material::{Material, Scattering};
 
 use std::fmt;

@@ -9,7 +9,9 @@ mod picture;
 
 pub use faults::Faults;
 #[cfg(feature = "render")]
-pub use picture::{Estimate, FirstBounce, Kernel, MAX_PICTURE_RADIUS, PictureSettings, RadiusChoice};
+pub use picture::{
+    DirectLight, Estimate, FirstBounce, Kernel, MAX_PICTURE_RADIUS, PictureSettings, RadiusChoice,
+};
 
 use crate::error::{Error, Result};
 

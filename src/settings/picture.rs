@@ -102,6 +102,18 @@ pub enum FirstBounce {
     Maps,
 }
 
+/// How direct light finds what is in its way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+pub enum DirectLight {
+    /// By shadow rays on the CPU, to other places of the lights from each pixel.
+    Traced,
+    /// By shadow maps on the GPU (thesis 2.2), around places of the lights that are the same for all pixels; what is seen in
+    /// mirrors and through glass is traced all the same.
+    ShadowMap,
+}
+
 /// Everything that a picture depends on beside the scene and its photons.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
@@ -121,9 +133,11 @@ pub struct PictureSettings {
     pub first_bounce: FirstBounce,
     /// Splat or gather.
     pub estimate: Estimate,
-    /// Shadow rays for each area light, a square number is best, at least 1.
+    /// Shadow rays or shadow maps.
+    pub direct: DirectLight,
+    /// Shadow rays of each pixel, or cubes of shadow maps, for each area light; a square number is best, at least 1.
     pub light_samples: u32,
-    /// The seed of the shadow rays.
+    /// The seed of the places on the lights.
     pub seed: u64,
 }
 
@@ -141,6 +155,7 @@ impl Default for PictureSettings {
             kernel: Kernel::Silverman,
             first_bounce: FirstBounce::Rays,
             estimate: Estimate::Splat,
+            direct: DirectLight::Traced,
             light_samples: 16,
             seed: 1,
         }

@@ -12,11 +12,15 @@ mod exactness;
 mod faults;
 mod frames;
 mod host;
+#[cfg(feature = "render")]
+mod leaks;
 mod objects;
 #[cfg(feature = "render")]
 mod picture;
 mod radius;
 mod shaders;
+#[cfg(feature = "render")]
+mod shadow_map;
 #[cfg(feature = "render")]
 mod splat;
 #[cfg(feature = "render")]

@@ -90,7 +90,9 @@ fn all_sources() -> Vec<ShaderSource> {
         sources.insert(source.fragment(), source);
     }
     #[cfg(feature = "render")]
-    for source in varikernel::render::shader_sources() {
+    for source in
+        varikernel::render::shader_sources().into_iter().chain([varikernel::measure::PointPass::source()])
+    {
         sources.insert(source.vertex() + &source.fragment(), source);
     }
     sources.into_values().collect()
@@ -165,7 +167,7 @@ fn every_method_runs_on_the_commands_of_3_3_core_alone() {
 fn every_stage_of_a_picture_runs_on_the_commands_of_3_3_core_alone() {
     use varikernel::photon::TraceSettings;
     use varikernel::render::Renderer;
-    use varikernel::settings::{Estimate, FirstBounce, Kernel, PictureSettings, RadiusChoice};
+    use varikernel::settings::{DirectLight, Estimate, FirstBounce, Kernel, PictureSettings, RadiusChoice};
 
     let scene = varikernel::scene::Scene::shipped("cornell-glass").unwrap();
     let trace = TraceSettings { photons: 500, ..TraceSettings::default() };
@@ -174,7 +176,8 @@ fn every_stage_of_a_picture_runs_on_the_commands_of_3_3_core_alone() {
     let mut pictures = Vec::new();
     for candidate in &working_candidates() {
         let gl = strict(candidate);
-        let maps = PictureSettings { first_bounce: FirstBounce::Maps, ..usual };
+        let direct = DirectLight::ShadowMap;
+        let maps = PictureSettings { first_bounce: FirstBounce::Maps, direct, ..usual };
         let mut renderer = Renderer::new(&gl, &scene, &maps, &trace, &mut |_| ()).unwrap();
         let mut all: Vec<_> = Kernel::ALL.map(|kernel| PictureSettings { kernel, ..usual }).to_vec();
         all.push(PictureSettings { radius: RadiusChoice::Fixed(3), ..usual });

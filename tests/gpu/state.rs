@@ -362,7 +362,7 @@ fn follow_frames(
 fn check_picture(host: &Host, before: &[(String, Vec<i32>)]) {
     use varikernel::measure::PictureError;
     use varikernel::render::Renderer;
-    use varikernel::settings::{Estimate, PictureSettings, RadiusChoice};
+    use varikernel::settings::{DirectLight, Estimate, PictureSettings, RadiusChoice};
 
     fn beauty(gl: &Gl, settings: &PictureSettings, after: &dyn Fn(&str)) -> Image<[f32; 3]> {
         let scene = varikernel::scene::Scene::shipped("cornell-glass").unwrap();
@@ -382,6 +382,7 @@ fn check_picture(host: &Host, before: &[(String, Vec<i32>)]) {
         PictureSettings {
             estimate: Estimate::Gather { count_correction: false },
             radius: RadiusChoice::Fixed(2),
+            direct: DirectLight::ShadowMap,
             ..usual
         },
     ] {

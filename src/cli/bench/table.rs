@@ -221,7 +221,7 @@ fn verdict(verdict: Verdict) -> &'static str {
     }
 }
 
-fn device_facts(device: &Device) -> Vec<(&'static str, String)> {
+pub(super) fn device_facts(device: &Device) -> Vec<(&'static str, String)> {
     vec![
         ("renderer", device.renderer.clone()),
         ("driver", device.driver.clone()),

@@ -11,12 +11,16 @@
 //!
 //! A [suite](FastSuite) is a fixed set of maps and cases with [targets](Target) for their ratios.
 //!
+//! `PictureSuite` (with the feature `render`) times the stages of a picture instead.
+//!
 //! [Rivals](super::rivals) on the processor are cases like the others, at the stage of a whole frame.
 
 mod case;
 mod compare;
 mod fast;
 mod files;
+#[cfg(feature = "render")]
+mod picture;
 mod report;
 mod rival;
 mod runner;
@@ -29,6 +33,8 @@ mod workbench;
 pub use case::{AUTO, Case, Stage};
 pub use compare::{ComparedRun, Comparison, Verdict, compare};
 pub use fast::FastSuite;
+#[cfg(feature = "render")]
+pub use picture::{PictureReport, PictureRow, PictureSuite};
 pub use report::{Device, LeftOut, Report, Run};
 pub use runner::{Progress, empty_report, run};
 pub use settings::{BenchSettings, MapInfo, MapSource, Protocol};

@@ -57,7 +57,7 @@ impl PictureError {
         if !light.into_iter().chain(sight).all(is_finite) {
             return Self { rmse: f64::NAN, relative_mse: f64::NAN, ssim: f64::NAN, flip: f64::NAN };
         }
-        let (rmse, relative_mse) = squared(light);
+        let LightError { rmse, relative_mse } = LightError::between(light[0].values(), light[1].values());
         let tone_map = ToneMap::fitting(sight[1]);
         let [picture, reference] = sight.map(|image| tone_map.apply(image));
         Self {
@@ -69,23 +69,39 @@ impl PictureError {
     }
 }
 
-/// Root of the mean squared difference, and the mean of the relative one.
-fn squared([picture, reference]: [&Image<[f32; 3]>; 2]) -> (f64, f64) {
-    let values = |image: &Image<[f32; 3]>| -> Vec<f64> {
-        image.values().iter().flatten().map(|&value| f64::from(value)).collect()
-    };
-    let (found, wanted) = (values(picture), values(reference));
-    #[expect(clippy::cast_precision_loss, reason = "fewer than 2^53 pixels")]
-    let count = wanted.len() as f64;
-    let mean_square = wanted.iter().map(|value| value * value).sum::<f64>() / count;
-    let epsilon = DARK * DARK * mean_square;
-    let (mut squared, mut relative) = (0.0, 0.0);
-    for (found, wanted) in found.iter().zip(&wanted) {
-        let difference = (found - wanted).powi(2);
-        squared += difference;
-        relative += if difference > 0.0 { difference / (wanted * wanted + epsilon) } else { 0.0 };
+/// The error of some pixels of linear RGB radiance, wherever they lie: the first two numbers of a [`PictureError`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct LightError {
+    /// As [`PictureError::rmse`].
+    pub rmse: f64,
+    /// As [`PictureError::relative_mse`], ε by these pixels alone.
+    pub relative_mse: f64,
+}
+
+impl LightError {
+    /// Compares pixels with those of a reference in the same order; NaN without a pixel.
+    ///
+    /// # Panics
+    /// If there are more of one than of the other.
+    #[must_use]
+    pub fn between(found: &[[f32; 3]], wanted: &[[f32; 3]]) -> Self {
+        assert_eq!(found.len(), wanted.len(), "as many pixels");
+        let values =
+            |pixels: &[[f32; 3]]| -> Vec<f64> { pixels.iter().flatten().copied().map(f64::from).collect() };
+        let (found, wanted) = (values(found), values(wanted));
+        #[expect(clippy::cast_precision_loss, reason = "fewer than 2^53 pixels")]
+        let count = wanted.len() as f64;
+        let mean_square = wanted.iter().map(|value| value * value).sum::<f64>() / count;
+        let epsilon = DARK * DARK * mean_square;
+        let (mut squared, mut relative) = (0.0, 0.0);
+        for (found, wanted) in found.iter().zip(&wanted) {
+            let difference = (found - wanted).powi(2);
+            squared += difference;
+            relative += if difference > 0.0 { difference / (wanted * wanted + epsilon) } else { 0.0 };
+        }
+        Self { rmse: (squared / count).sqrt(), relative_mse: relative / count }
     }
-    ((squared / count).sqrt(), relative / count)
 }
 
 #[cfg(test)]

@@ -238,8 +238,6 @@ impl<'s> Run<'s> {
                 }
             }
         }
-        // Fixed radii come last: no search is wanted for them.
-        missing.sort_by_key(|(width, _)| width.is_fixed());
         for (width, kernel) in missing {
             let trace = TraceSettings { photons: place.photons, seed, ..TraceSettings::default() };
             let studio = match studio {

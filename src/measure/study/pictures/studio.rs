@@ -10,7 +10,7 @@ use crate::measure::PictureError;
 use crate::photon::TraceSettings;
 use crate::render::{Layers, Renderer};
 use crate::scene::Scene;
-use crate::settings::{Kernel, PictureSettings, RadiusChoice};
+use crate::settings::{Kernel, PictureSettings};
 
 /// The pictures that others are compared with.
 pub(super) struct Compared {
@@ -62,22 +62,16 @@ impl<'a> Studio<'a> {
         width: Width,
         kernel: Kernel,
     ) -> Result<PictureRow> {
-        let mut settings = self.study.settings(width, kernel);
-        // The renderer keeps its radii while n stays. Variable ones are searched within their time, fixed ones have none.
-        match width {
-            Width::Variable { min_photons } if self.searched == Some(min_photons) => {
-                self.unmeasured(&PictureSettings { min_photons: min_photons + 1, ..settings })?;
-            }
-            Width::Variable { .. } => (),
-            Width::Fixed { .. } => match self.searched {
-                Some(min_photons) => settings.min_photons = min_photons,
-                None => self.unmeasured(&settings)?,
-            },
+        let settings = self.study.settings(width, kernel);
+        let min_photons = width.min_photons();
+        if let Some(min_photons) = min_photons.filter(|_| min_photons == self.searched) {
+            // The renderer keeps its radii while n stays; each picture is timed with its search.
+            self.renderer.picture(&PictureSettings { min_photons: min_photons + 1, ..settings })?;
         }
         let begin = Instant::now();
         let (layers, account) = self.renderer.picture(&settings)?;
         let seconds_drawing = begin.elapsed().as_secs_f64();
-        self.searched = Some(settings.min_photons);
+        self.searched = min_photons.or(self.searched);
         let error = PictureError::of_light_and_sight(
             [&layers.indirect, &place.target.indirect],
             [&layers.beauty, &place.target.beauty],
@@ -90,17 +84,10 @@ impl<'a> Studio<'a> {
             width,
             error,
             mean_radius: mean_radius(&layers),
-            limited_share: if width.is_fixed() { 0.0 } else { account.limited_share },
+            limited_share: account.limited_share,
             seconds_before: self.seconds_before,
             seconds_drawing,
         })
-    }
-
-    /// Leaves the renderer with the radii of these settings.
-    fn unmeasured(&mut self, settings: &PictureSettings) -> Result<()> {
-        self.renderer.picture(&PictureSettings { radius: RadiusChoice::Fixed(1), ..*settings })?;
-        self.searched = Some(settings.min_photons);
-        Ok(())
     }
 }
 

@@ -1,0 +1,6 @@
+layout(location = 0) out float count;
+
+void main()
+{
+    count = 1.0;
+}

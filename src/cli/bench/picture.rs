@@ -1,0 +1,86 @@
+//! `varikernel bench --suite picture`: what the stages of a picture cost.
+
+use std::io::Write as _;
+use std::time::Duration;
+
+use anyhow::{Result, bail};
+use varikernel::context;
+use varikernel::image::{check_writable, write_atomically};
+use varikernel::measure::bench::{PictureReport, PictureRow, PictureSuite};
+
+use super::table::{align_right, device_facts, new_table, three_digits};
+use super::{Args, progress_bar, targets};
+use crate::cli::{Outcome, output};
+
+pub(super) fn run(args: &Args) -> Result<Outcome> {
+    let &[size] = args.sizes.as_slice() else {
+        bail!("--suite picture is of one size: give one with --sizes")
+    };
+    for (given, name) in
+        [(args.rivals, "rivals"), (args.csv.is_some(), "csv"), (args.resume.is_some(), "resume")]
+    {
+        if given {
+            bail!(
+                "--{name} is not possible with --suite picture\nhelp: it takes --sizes, --photons, --budget and --json"
+            );
+        }
+    }
+    if let Some(path) = &args.json {
+        check_writable(path)?;
+    }
+    let gl = context::open(&args.device)?;
+    let budget = args.budget.unwrap_or(Duration::from_secs(60));
+    let suite = PictureSuite { size: size.to_array(), photons: args.photons, ..PictureSuite::default() };
+    let bar = progress_bar();
+    bar.set_length(1000);
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of 1000")]
+    let report = suite.run(&gl, budget, &mut |done| bar.set_position((1000.0 * done) as u64))?;
+    bar.finish_and_clear();
+    if let Some(path) = &args.json {
+        let text = serde_json::to_string_pretty(&report)?;
+        write_atomically(path, |file| writeln!(file, "{text}"))?;
+    }
+    print(&report)?;
+    targets::print(&report.targets)?;
+    Ok(Outcome::Done)
+}
+
+fn print(report: &PictureReport) -> Result<()> {
+    let PictureSuite { scene, size: [width, height], photons, .. } = &report.suite;
+    let [min_photons, max_radius, fixed] = report.radii;
+    let mut facts = device_facts(&report.device);
+    facts.push(("scene", format!("{scene}, {width} x {height}")));
+    facts.push((
+        "photons",
+        format!("{photons} traced, {} drawn, {} contribute", report.drawn, report.contributing),
+    ));
+    facts.push(("radii", format!("n {min_photons}, MR {max_radius}; fixed {fixed}")));
+    output::print_facts(&facts)?;
+    let mut table = new_table(&["stage", "ms", "point passes", "fragments", "ns each", "samples", "answer"]);
+    align_right(&mut table, 1..=5);
+    for row in &report.rows {
+        let number = |value: Option<f64>| value.map_or_else(String::new, three_digits);
+        table.add_row([
+            row.name.clone(),
+            three_digits(row.statistics.median_ms),
+            number(row.point_passes),
+            number(row.fragments_per_photon),
+            number(row.ns_per_fragment),
+            row.statistics.count.to_string(),
+            answer(row).to_owned(),
+        ]);
+    }
+    output::print(&table.trim_fmt())?;
+    output::print(
+        "\nms: median time. point passes: ms over those of the photons drawn as points.\n\
+         fragments: for each contributing photon, and their time.",
+    )
+}
+
+fn answer(row: &PictureRow) -> &'static str {
+    match row.right {
+        Some(true) => "right",
+        Some(false) => "WRONG",
+        None => "",
+    }
+}

@@ -1,0 +1,44 @@
+//! The files of a picture: EXR with its layers, or PNG.
+
+use anyhow::Result;
+use varikernel::image::{Attribute, Format, LayerFile, write_colours};
+use varikernel::render::Layers;
+
+use super::Args;
+
+pub(super) fn write(args: &Args, layers: &Layers, attributes: &[Attribute]) -> Result<()> {
+    let path = &args.output;
+    if Format::of(path)? == Format::Png {
+        return Ok(write_colours(path, &args.source.tone_map(&layers.beauty).apply(&layers.beauty))?);
+    }
+    let (rgb, xyz) = (['R', 'G', 'B'], ['X', 'Y', 'Z']);
+    #[expect(clippy::cast_precision_loss, reason = "radii are at most 96")]
+    let radius = layers.radius.map(|radius| radius as f32);
+    let file = LayerFile::new(layers.beauty.size())
+        .colours("", rgb, &layers.beauty)
+        .colours("direct", rgb, &layers.direct)
+        .colours("indirect", rgb, &layers.indirect)
+        .colours("albedo", rgb, &layers.albedo)
+        .colours("normal", xyz, &layers.normal)
+        .values("density", &layers.density)
+        .values("radius", &radius)
+        .values("limited", &layers.limited.map(f32::from))
+        .values("depth", &layers.depth);
+    Ok(file.write(path, attributes)?)
+}
+
+/// What made the picture, for its file.
+pub(super) fn attributes(args: &Args, scene: &str) -> Vec<Attribute> {
+    let source = &args.source;
+    vec![
+        Attribute::text("varikernel.scene", scene),
+        Attribute::integer("varikernel.photons", source.photons),
+        Attribute::integer("varikernel.bounces", source.bounces),
+        Attribute::text("varikernel.seed", source.seed.to_string()),
+        Attribute::integer("varikernel.min_photons", source.min_photons),
+        Attribute::integer("varikernel.max_radius", source.max_radius),
+        Attribute::text("varikernel.radius", format!("{:?}", args.radius)),
+        Attribute::text("varikernel.kernel", format!("{:?}", source.kernel)),
+        Attribute::text("varikernel.version", env!("CARGO_PKG_VERSION")),
+    ]
+}

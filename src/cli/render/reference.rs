@@ -1,0 +1,67 @@
+//! `varikernel render --reference`: seeds averaged, saved as it goes.
+
+use std::time::{Duration, Instant};
+
+use anyhow::{Result, bail};
+use varikernel::Gl;
+use varikernel::image::Attribute;
+use varikernel::photon::TraceSettings;
+use varikernel::render::{Progress, Reference};
+use varikernel::scene::Scene;
+use varikernel::settings::PictureSettings;
+
+use super::files::{attributes, write};
+use super::{Args, Bar, in_words_of_options};
+use crate::cli::{Outcome, output};
+
+/// A reference that takes long is saved as often as this.
+const SAVE_EVERY: Duration = Duration::from_secs(20);
+
+/// Averages seeds, and writes the picture again where the last time is long ago.
+pub(super) fn render(
+    args: &Args,
+    gl: &Gl,
+    scene: &Scene,
+    settings: &PictureSettings,
+    seeds: u32,
+) -> Result<Outcome> {
+    if seeds == 0 {
+        bail!("--reference 0 is not possible: a mean takes at least 1 seed");
+    }
+    let trace = args.source.trace();
+    let bar = Bar::new();
+    let mut reference = Reference::new(gl, scene, settings, &mut |progress| bar.show(progress))?;
+    let mut saved = Instant::now();
+    let mut attributes = attributes(args, &scene.title);
+    attributes.push(Attribute::integer("varikernel.reference_seeds", seeds));
+    for seed in 0..seeds {
+        let trace = TraceSettings { seed: trace.seed.wrapping_add(u64::from(seed)), ..trace };
+        let mut show = |Progress { done, .. }: Progress| {
+            let done = (f64::from(seed) + done) / f64::from(seeds);
+            bar.show(Progress { stage: "reference", done });
+        };
+        reference.add_seed(scene, &trace, &mut show).map_err(in_words_of_options)?;
+        if seed + 1 == seeds || saved.elapsed() > SAVE_EVERY {
+            write(args, &reference.picture()?, &attributes)?;
+            saved = Instant::now();
+        }
+    }
+    bar.finish();
+    if args.json {
+        let report = serde_json::json!({
+            "version": env!("CARGO_PKG_VERSION"),
+            "scene": scene.title,
+            "output": args.output,
+            "photons": trace,
+            "reference_seeds": seeds,
+        });
+        output::print_json(&report)?;
+    } else {
+        output::print_facts(&[
+            ("scene", scene.title.clone()),
+            ("reference", format!("{seeds} seeds of {} photons", trace.photons)),
+            ("written", args.output.display().to_string()),
+        ])?;
+    }
+    Ok(Outcome::Done)
+}

@@ -1,0 +1,175 @@
+//! What is nearest around a place, rasterised: six maps, one for each side of a cube (thesis 2.2, 2.6.1).
+//!
+//! - A texel holds the nearest triangle or sphere in its direction, from 1; the triangles come first, in the order of the
+//!   scene, then the spheres. 0 is nothing.
+//! - The depth test is by the distance from the place, not by z of the projection, which would be coarse far away.
+//! - Sides may reach beyond the cube's edges by some texels, so that a texel at an edge has all its neighbours.
+//! - Cost: a draw of the scene for each side.
+
+use bytemuck::{Pod, Zeroable};
+use glam::{Mat4, UVec2, Vec3};
+
+use crate::error::Result;
+use crate::gl::{
+    Gl, Pass, Program, ShaderSource, StateGuard, Target, Texture, TextureFormat, Vertices, glsl,
+};
+use crate::scene::{Camera, LightPlace, Scene};
+
+const TRIANGLES: &str = "cube map of triangles";
+const SPHERES: &str = "cube map of spheres";
+
+/// Sides of a cube.
+pub(crate) const FACES: usize = 6;
+
+/// As `surfaces/triangles.vert` takes it.
+#[derive(Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+struct Corner {
+    position: Vec3,
+    unused: [f32; 6],
+    number: f32,
+}
+
+/// As `surfaces/spheres.vert` takes it.
+#[derive(Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+struct CubeCorner {
+    position: Vec3,
+    centre: Vec3,
+    unused: [f32; 3],
+    radius: f32,
+    number: f32,
+}
+
+/// The maps of one scene, one at a time.
+#[derive(Debug)]
+pub(crate) struct CubeMap {
+    gl: Gl,
+    programs: [Program; 2],
+    triangles: Vertices,
+    spheres: Vertices,
+    map: Target,
+    fov_degrees: f32,
+    /// The scene's middle, and the length of its diagonal.
+    centre: Vec3,
+    extent: f32,
+}
+
+impl CubeMap {
+    /// Maps of `side` columns and rows, of which `border` on each edge lie beyond the cube's.
+    pub(crate) fn new(gl: &Gl, scene: &Scene, side: u16, border: u16) -> Result<Self> {
+        let _state = StateGuard::new(gl);
+        let [triangles, spheres] = sources();
+        let programs = [Program::new(gl, &triangles)?, Program::new(gl, &spheres)?];
+        let map = Texture::new(gl, TextureFormat::R32Uint, UVec2::splat(side.into()), 1)?;
+        let (min, max) = scene.bounds();
+        let extent = (max - min).length();
+        let wider = f32::from(side) / f32::from(side - 2 * border);
+        Ok(Self {
+            gl: gl.clone(),
+            programs,
+            triangles: Vertices::upload(gl, &corners(scene), &[3, 3, 3, 1])?,
+            spheres: Vertices::upload(gl, &cubes(scene), &[3, 3, 3, 1, 1])?,
+            map: Target::with_depth(gl, vec![map])?,
+            fov_degrees: 2.0 * wider.atan().to_degrees(),
+            centre: min.midpoint(max),
+            extent,
+        })
+    }
+
+    /// One side of the cube around `place`.
+    pub(crate) fn draw(&mut self, place: Vec3, face: usize) -> Result<&Texture> {
+        let _state = StateGuard::new(&self.gl);
+        let to_clip = self.to_clip(place, face);
+        self.map.clear(&[0]);
+        self.map.clear_depth();
+        for (label, program, vertices) in
+            [(TRIANGLES, &self.programs[0], &self.triangles), (SPHERES, &self.programs[1], &self.spheres)]
+        {
+            Pass::new(label, program)
+                .set("to_clip", to_clip)
+                .set("camera", place)
+                .set("far", self.far(place))
+                .draw_triangles(vertices, &mut self.map)?;
+        }
+        self.gl.check("drawing a cube map")?;
+        Ok(self.map.texture())
+    }
+
+    /// From scene units to the clip space of one side.
+    pub(crate) fn to_clip(&self, place: Vec3, face: usize) -> Mat4 {
+        let mut direction = Vec3::ZERO;
+        direction[face / 2] = if face.is_multiple_of(2) { 1.0 } else { -1.0 };
+        let mut up = Vec3::ZERO;
+        up[(face / 2 + 1) % 3] = 1.0;
+        let camera = Camera { position: place, direction, up, vertical_fov_degrees: self.fov_degrees };
+        camera.projection(1.0, 1e-5 * self.extent, self.far(place)) * camera.view()
+    }
+
+    /// A distance from `place` beyond everything.
+    fn far(&self, place: Vec3) -> f32 {
+        place.distance(self.centre) + self.extent
+    }
+}
+
+/// The side of the cube that a direction leaves through: 0 and 1 along x, 2 and 3 along y, 4 and 5 along z.
+pub(crate) fn face_of(direction: Vec3) -> usize {
+    let axis = direction.abs().max_position();
+    2 * axis + usize::from(direction[axis] < 0.0)
+}
+
+/// Whether a light sends anything through a side of the cube around it.
+pub(crate) fn shines_through(light: &LightPlace, face: usize) -> bool {
+    let axis = light.axis.as_vec3();
+    let along = if face.is_multiple_of(2) { axis[face / 2] } else { -axis[face / 2] };
+    match light.half_angle {
+        // From the middle of a side to its corners.
+        Some(angle) => along.clamp(-1.0, 1.0).acos() <= angle + 3.0_f32.sqrt().recip().acos(),
+        // At the corner where the cosine is largest.
+        None => along + axis.abs().element_sum() - axis[face / 2].abs() > 0.0,
+    }
+}
+
+#[expect(clippy::cast_precision_loss, reason = "fewer than 2^24 primitives")]
+fn corners(scene: &Scene) -> Vec<Corner> {
+    let geometry = scene.geometry();
+    let numbered = (1..).zip(&geometry.triangles);
+    let corners = numbered.flat_map(|(number, triangle): (u32, _)| {
+        geometry.corners(triangle).map(|position| Corner {
+            position,
+            unused: [0.0; 6],
+            number: number as f32,
+        })
+    });
+    corners.collect()
+}
+
+#[expect(clippy::cast_precision_loss, reason = "fewer than 2^24 primitives")]
+fn cubes(scene: &Scene) -> Vec<CubeCorner> {
+    let geometry = scene.geometry();
+    let first = geometry.triangles.len() + 1;
+    let corners = (first..).zip(&geometry.spheres).flat_map(|(number, sphere)| {
+        let (centre, radius) = (sphere.centre, sphere.radius);
+        sphere.cube().map(|position| CubeCorner {
+            position,
+            centre,
+            unused: [0.0; 3],
+            radius,
+            number: number as f32,
+        })
+    });
+    corners.collect()
+}
+
+/// The shaders of a map.
+pub(crate) fn sources() -> [ShaderSource; 2] {
+    [
+        ShaderSource::new(TRIANGLES)
+            .vertex_file(glsl!("surfaces/triangles.vert"))
+            .file(glsl!("cube_map/triangles.frag")),
+        ShaderSource::new(SPHERES)
+            .define("PRIMITIVES", 1_u32)
+            .vertex_file(glsl!("surfaces/spheres.vert"))
+            .file(glsl!("surfaces/spheres.frag")),
+    ]
+}

@@ -1,0 +1,79 @@
+//! Places that stand for a light: what shadow rays and shadow maps start from.
+
+use glam::{DVec3, Vec3};
+
+use super::light::{Light, LightShape, area};
+
+/// A place that a light shines from, with its part of the light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct LightPlace {
+    /// In scene units.
+    pub(crate) position: DVec3,
+    /// The light's normal there, or the axis of its cone; of length 1.
+    pub(crate) axis: DVec3,
+    /// The cone's half angle in radians; none for a surface, which shines by the cosine to its normal.
+    pub(crate) half_angle: Option<f32>,
+    /// Power per solid angle along the axis.
+    pub(crate) intensity: DVec3,
+}
+
+impl LightPlace {
+    /// Irradiance at `position`, on the side to which `normal` points, if nothing is between.
+    pub(crate) fn irradiance(&self, position: DVec3, normal: DVec3) -> DVec3 {
+        let away = self.position - position;
+        let squared = away.length_squared();
+        let to_light = away / squared.sqrt();
+        let cos = normal.dot(to_light);
+        let shines = match self.half_angle {
+            Some(angle) if (-to_light).angle_between(self.axis) <= f64::from(angle) => 1.0,
+            Some(_) => 0.0,
+            None => -self.axis.dot(to_light),
+        };
+        if cos > 0.0 && shines > 0.0 { self.intensity * (shines * cos / squared) } else { DVec3::ZERO }
+    }
+}
+
+impl Light {
+    /// The point of a point light, or places spread evenly over an area, one in each cell of a square grid; `number` draws
+    /// from 0 to 1, twice for each.
+    pub(crate) fn places(&self, samples: u32, number: &mut dyn FnMut() -> f64) -> Vec<LightPlace> {
+        match &self.shape {
+            LightShape::Point { position, direction, half_angle, intensity } => vec![LightPlace {
+                position: position.as_dvec3(),
+                axis: direction.as_dvec3(),
+                half_angle: Some(*half_angle),
+                intensity: intensity.as_dvec3(),
+            }],
+            LightShape::Area { triangles, radiance } => {
+                let areas: Vec<f64> = triangles.iter().map(area).collect();
+                let whole: f64 = areas.iter().sum();
+                let intensity = radiance.as_dvec3() * (whole / f64::from(samples));
+                let side = f64::from(samples).sqrt().floor().max(1.0);
+                let place = |index| {
+                    // What is left over after the square grid is taken at random.
+                    let index = f64::from(index);
+                    let (row, column) = ((index / side).floor(), index % side);
+                    let (u, v) = (number(), number());
+                    let uv = if row < side { [(column + u) / side, (row + v) / side] } else { [u, v] };
+                    let (position, axis) = place_on(triangles, &areas, whole, uv);
+                    LightPlace { position, axis, half_angle: None, intensity }
+                };
+                (0..samples).map(place).collect()
+            }
+        }
+    }
+}
+
+/// A place on the triangles, evenly by area, for a point (u, v) of the unit square, and the normal there.
+fn place_on(triangles: &[[Vec3; 3]], areas: &[f64], whole: f64, [u, v]: [f64; 2]) -> (DVec3, DVec3) {
+    let mut left = u * whole;
+    let mut index = 0;
+    while index + 1 < areas.len() && left >= areas[index] {
+        left -= areas[index];
+        index += 1;
+    }
+    let [corner, second, third] = triangles[index].map(Vec3::as_dvec3);
+    let share = (left / areas[index]).clamp(0.0, 1.0);
+    let at = corner + share.sqrt() * (second - corner + v * (third - second));
+    (at, (second - corner).cross(third - corner).normalize())
+}
