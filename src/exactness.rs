@@ -119,6 +119,7 @@ impl CountBounds {
 const U32_MAX: u64 = u32::MAX as u64;
 const U16_MAX: u64 = u16::MAX as u64;
 const F32_MAX: u64 = 1 << 24;
+const F16_MAX: u64 = 1 << 11;
 
 /// How counts are taken in so that the sums stay right.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -170,13 +171,24 @@ pub fn plan(settings: &Settings, size: UVec2, bounds: CountBounds) -> Result<Pla
                 )
             }
         }
-        (Method::SummedAreaTable, Storage::F32) if bounds.total > F32_MAX => inexact(
-            format!(
-                "a table in f32 is exact up to {F32_MAX} photons in all, and the map may hold {}",
-                known(bounds.total)
-            ),
+        (_, Storage::F32MinusMean | Storage::F32MinusWholeMean) => inexact(
+            "a table in f32 from which the mean was subtracted is not proved exact for any map".to_owned(),
             "keep the table in u32 (storage u32)",
         ),
+        (Method::SummedAreaTable, Storage::F32 | Storage::F16) => {
+            let limit = if settings.storage == Storage::F16 { F16_MAX } else { F32_MAX };
+            if bounds.total <= limit {
+                return Ok(unclamped);
+            }
+            inexact(
+                format!(
+                    "a table in {} is exact up to {limit} photons in all, and the map may hold {}",
+                    settings.storage.name(),
+                    known(bounds.total)
+                ),
+                "keep the table in u32 (storage u32)",
+            )
+        }
         (Method::BruteForce | Method::NaiveMipmap | Method::Pyramid, Storage::F32)
             if densest_box > F32_MAX =>
         {
@@ -189,7 +201,7 @@ pub fn plan(settings: &Settings, size: UVec2, bounds: CountBounds) -> Result<Pla
                 "keep the sums in u32 (storage u32)",
             )
         }
-        (_, Storage::F32) => Ok(unclamped),
+        (_, Storage::F32 | Storage::F16) => Ok(unclamped),
     }
 }
 

@@ -127,7 +127,7 @@ impl Case {
             (Method::SummedAreaTable, Some(samples)) => format!("sat-doubling-{}", samples.count()),
         };
         if settings.storage != base {
-            variant += storage_suffix(settings.storage);
+            variant = format!("{variant}-{}", settings.storage.name());
         }
         let searches = stage != Stage::Build;
         Self {
@@ -176,15 +176,6 @@ pub(super) fn edges_name(edges: Edges) -> &'static str {
     match edges {
         Edges::Zero => "zero",
         Edges::Scale => "scale",
-    }
-}
-
-/// The end of a variant's name.
-fn storage_suffix(storage: Storage) -> &'static str {
-    match storage {
-        Storage::F32 => "-f32",
-        Storage::U32 => "-u32",
-        Storage::U16 => "-u16",
     }
 }
 
