@@ -9,6 +9,7 @@ mod photons;
 mod radius;
 mod render;
 mod reproduce;
+mod stress;
 mod synth;
 
 use std::io::{self, IsTerminal as _};
@@ -27,13 +28,14 @@ Examples:
   varikernel compare radius.exr other.npy      how two maps differ
   varikernel photons -o photons.npy            trace photons through a Cornell box
   varikernel reproduce                         the thesis's numbers from this machine
+  varikernel stress --quick                    whether the promises about exactness hold here
   varikernel devices                           the OpenGL devices found here";
 
 /// Variable-kernel radius maps from photon density maps, exact, in OpenGL 3.3 core.
 ///
 /// For each pixel of a map of photon counts: the radius of the smallest box that holds at least n photons
-/// (E. W. Bjønnes, Oslo 2010). Exit codes: 0 done, 1 the maps differ or are not
-/// proved, 2 it could not be done.
+/// (E. W. Bjønnes, Oslo 2010). Exit codes: 0 done, 1 the maps differ, are not
+/// proved or a promise is broken, 2 it could not be done.
 #[derive(Debug, Parser)]
 #[command(version, max_term_width = 100, arg_required_else_help = true, after_help = EXAMPLES)]
 pub(crate) struct Cli {
@@ -53,6 +55,7 @@ enum Verb {
     // Boxed: it has by far the most options.
     Bench(Box<bench::Args>),
     Reproduce(reproduce::Args),
+    Stress(stress::Args),
     Compare(compare::Args),
     Photons(photons::Args),
     Synth(synth::Args),
@@ -62,7 +65,7 @@ enum Verb {
 /// What a verb that did its job found.
 pub(crate) enum Outcome {
     Done,
-    /// The answer to "are they equal?", or to "is it proved?", is no.
+    /// The answer to "are they equal?", "is it proved?" or "is it kept?" is no.
     Differs,
 }
 
@@ -75,6 +78,7 @@ pub(crate) fn run(cli: Cli) -> Result<Outcome> {
         Verb::Photons(args) => photons::run(&args),
         Verb::Synth(args) => synth::run(&args),
         Verb::Reproduce(args) => reproduce::run(&args),
+        Verb::Stress(args) => stress::run(&args),
         Verb::Devices(args) => devices::run(&args),
         Verb::Bench(args) => bench::run(&args),
     }

@@ -12,6 +12,8 @@ pub mod reproduce;
 #[cfg(feature = "bench")]
 pub mod rivals;
 mod statistics;
+#[cfg(all(feature = "report", feature = "render"))]
+pub mod stress;
 mod summary;
 #[cfg(feature = "report")]
 pub mod thesis;

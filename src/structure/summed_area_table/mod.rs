@@ -138,7 +138,11 @@ impl Build {
 }
 
 /// What the storage takes from each count: the mean of the map, as far as its total is known.
-#[expect(clippy::cast_possible_truncation, clippy::cast_precision_loss, reason = "rounding is what it is about")]
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_precision_loss,
+    reason = "rounding is what it is about"
+)]
 fn mean(density: &DensityMap, settings: &Settings) -> Option<f32> {
     let (pixels, total) = (density.size().as_dvec2().element_product(), density.bounds().total);
     let mean = if total == u64::MAX { 0.0 } else { total as f64 / pixels };
