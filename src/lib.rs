@@ -43,7 +43,7 @@
 //! | module | what it holds |
 //! |---|---|
 //! | `cli`, `main` | the program, built on the public library: one file a verb |
-//! | [`measure`] | how right and how fast a result is: differences, timing runs (`bench`), rivals on the processor (`rivals`), the thesis's tables and claims (`thesis`), both together (`reproduce`), a page of them (`report`) |
+//! | [`measure`] | how right and how fast a result is: differences, timing runs (`bench`), rivals on the processor (`rivals`), the thesis's tables and claims (`thesis`), both together (`reproduce`), a page of them (`report`), promises about numbers put to the test (`stress`) |
 //! | `render` | scene in, picture out: the stages of a picture in order, soft shadows, what is seen in mirrors and through glass |
 //! | `bounce_map`, `gbuffer`, `density`, `splat`, `shade` | a stage of a picture each: what photons meet first, what pixels show, photons counted, kernels drawn, light added up |
 //! | `adaptive` | [`AdaptivePipeline`]: plans each frame by the photons of the ones before |

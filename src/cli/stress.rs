@@ -16,8 +16,8 @@ use varikernel::measure::stress::{self, Bits, Extent, Renderer, Report, StressSe
 
 use super::{Outcome, output};
 
-/// How often a renderer computes the same maps, to see that it always gives the same bits.
-const TIMES: u32 = 100;
+/// How often a renderer computes the same maps, to see that it always gives the same bits; and in a quick run.
+const TIMES: [u32; 2] = [100, 20];
 
 /// Put numbers under stress: where sums in each of them break, and whether the promises about exactness hold.
 ///
@@ -25,6 +25,7 @@ const TIMES: u32 = 100;
 /// blended counts and kernels, the order of the photons, and the same maps on every renderer and number of threads found
 /// here. Writes a folder with stress.csv (a line a row) and stress.json. Exit code 1 if a promise is broken.
 #[derive(Debug, clap::Args)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
 pub(crate) struct Args {
     /// Folder to write to; made if it is missing.
     #[arg(short, long, default_value = "stress", value_name = "FOLDER")]
@@ -87,7 +88,7 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
         }
         Ok(())
     })?;
-    report.compare_renderers(renderers(&gl, &bar)?);
+    report.compare_renderers(renderers(&gl, TIMES[usize::from(args.quick)], &bar)?);
     bar.finish_and_clear();
     save(&report)?;
 
@@ -114,13 +115,13 @@ fn progress_bar() -> ProgressBar {
 }
 
 /// The same maps here, on every other device, on Mesa's other software renderer, and with other numbers of threads.
-fn renderers(gl: &Gl, bar: &ProgressBar) -> Result<Vec<Renderer>> {
+fn renderers(gl: &Gl, times: u32, bar: &ProgressBar) -> Result<Vec<Renderer>> {
     let tell = |name: &str| {
         bar.inc(10);
         bar.set_message(format!("the same maps: {name}"));
     };
     tell("again");
-    let again = Bits::of(gl, TIMES)?;
+    let again = Bits::of(gl, times)?;
     let mut all = vec![Renderer { name: "again".to_owned(), found: Ok(again), of_threads: true }];
     let (candidates, missing) = context::candidates();
     for candidate in candidates {
@@ -138,7 +139,7 @@ fn renderers(gl: &Gl, bar: &ProgressBar) -> Result<Vec<Renderer>> {
     for threads in ["1", "2", "8"] {
         let name = format!("threads-{threads}");
         tell(&name);
-        let found = in_child("llvmpipe", Some(("LP_NUM_THREADS", threads)), TIMES);
+        let found = in_child("llvmpipe", Some(("LP_NUM_THREADS", threads)), times);
         all.push(Renderer { name, found, of_threads: true });
     }
     Ok(all)

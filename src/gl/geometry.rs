@@ -155,6 +155,20 @@ impl Pass<'_> {
         })
     }
 
+    /// Draws over the whole of `target`; values are added to what is there.
+    ///
+    /// # Errors
+    /// [`Error::UnknownUniform`](crate::Error::UnknownUniform) if the program lacks a name.
+    pub(crate) fn add_everywhere(self, target: &mut Target) -> Result<()> {
+        self.prepare(target, 0, UVec2::ZERO, target.size(), |gl| {
+            // SAFETY: the context is current, and the vertex stage reads no buffer.
+            adding(gl, target, || unsafe {
+                gl.glow().bind_vertex_array(Some(gl.vertex_array()));
+                gl.glow().draw_arrays(glow::TRIANGLES, 0, 3);
+            });
+        })
+    }
+
     /// Draws one quad for each vertex, which is an instance of a strip of four; values are added to what is there.
     ///
     /// # Errors

@@ -19,19 +19,17 @@ pub(super) fn print(report: &Report, judged: &[Judged]) -> Result<()> {
         .collect();
     output::print_rows(&rows)?;
 
-    output::print("\nNUMBERS: total photons of the maps")?;
-    let mut rows = vec![
-        ["", "accepted up to", "refused from", "first wrong", "accepted", "refused", "needlessly"]
-            .map(str::to_owned),
-    ];
-    let power = |total: Option<u64>| total.map_or_else(|| "-".to_owned(), |total| total.to_string());
+    output::print("\nNUMBERS: by the total of photons in a map, and rows")?;
+    let mut rows = vec![["", "accepted to", "refused from", "first wrong", "rows"].map(str::to_owned)];
     for (number, found) in report.breaks() {
-        let [accepted, refused, needless] = found.rows.map(|count| count.to_string());
-        let (last, first) = (power(found.last_accepted), power(found.first_refused));
-        rows.push([number, last, first, power(found.first_wrong), accepted, refused, needless]);
+        let [accepted, refused, needless] = found.rows;
+        let counts = format!("{accepted} accepted, {refused} refused, {needless} *");
+        let totals = [found.last_accepted, found.first_refused, found.first_wrong];
+        let [last, first, wrong] = totals.map(|total| total.map_or_else(|| "-".to_owned(), in_short));
+        rows.push([number, last, first, wrong, counts]);
     }
     output::print_rows(&rows)?;
-    output::print("\"needlessly\": refused, though no pixel would have been wrong")?;
+    output::print("* refused, though no pixel would have been wrong")?;
 
     output::print("\nOTHER SUMS")?;
     let others = report.rows.iter().filter(|row| {
@@ -39,7 +37,7 @@ pub(super) fn print(report: &Report, judged: &[Judged]) -> Result<()> {
     });
     output::print_rows(&others.map(other).collect::<Vec<_>>())?;
 
-    output::print("\nRENDERERS: hashes of four radius maps, and how many of all maps are right")?;
+    output::print("\nRENDERERS: hashes of four radius maps; how many of all are the definition's")?;
     output::print_rows(&report.renderers.iter().map(|one| renderer(report, one)).collect::<Vec<_>>())?;
 
     let broken: Vec<_> = report.rows.iter().filter(|row| row.verdict == Verdict::Broken).collect();
@@ -70,6 +68,21 @@ fn verdict(verdict: Verdict) -> String {
     }
 }
 
+/// Powers of two, and one more, as such; other large ones by two digits.
+fn in_short(total: u64) -> String {
+    if total < 100_000 {
+        total.to_string()
+    } else if total.is_power_of_two() {
+        format!("2^{}", total.ilog2())
+    } else if (total - 1).is_power_of_two() {
+        format!("2^{} + 1", total.ilog2())
+    } else {
+        #[expect(clippy::cast_precision_loss, reason = "two digits are shown")]
+        let total = total as f64;
+        format!("{total:.1e}")
+    }
+}
+
 fn other(row: &Row) -> [String; 3] {
     [verdict(row.verdict), row.id.clone(), found(row)]
 }
@@ -80,11 +93,9 @@ fn found(row: &Row) -> String {
     if let (Some(wrong), Some(of)) = (row.wrong, row.of) {
         parts.push(format!("{wrong} of {of} differ"));
     }
-    if let Some(error) = row.largest_error.filter(|_| row.wrong != Some(0)) {
-        parts.push(format!(
-            "by up to {}",
-            if error.fract() == 0.0 { error.to_string() } else { format!("{error:.1e}") }
-        ));
+    if let Some(error) = row.largest_error.filter(|_| row.wrong.is_some_and(|wrong| wrong > 0)) {
+        let error = if error.fract() == 0.0 { error.to_string() } else { format!("{error:.1e}") };
+        parts.push(format!("by up to {error}"));
     }
     if !row.note.is_empty() {
         parts.push(row.note.clone());
@@ -106,4 +117,15 @@ fn renderer(report: &Report, renderer: &Renderer) -> [String; 3] {
         (Ok(_), None) => String::new(),
     };
     [row.map_or_else(String::new, |row| verdict(row.verdict)), renderer.name.clone(), text]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::in_short;
+
+    #[test]
+    fn totals_by_hand() {
+        let texts = [2049, 1 << 24, (1 << 24) + 1, 267_294_964, 1_000_065_264].map(in_short);
+        assert_eq!(texts, ["2049", "2^24", "2^24 + 1", "2.7e8", "1.0e9"]);
+    }
 }

@@ -47,6 +47,9 @@ pub struct Renderer {
     pub of_threads: bool,
 }
 
+/// A case on a device, or why it is refused there.
+type Made = Result<(DensityMap, RadiusPipeline), String>;
+
 /// All cases: each method that is exact, on maps whose radii the edges, wrapping and clamping decide.
 #[must_use]
 pub fn cases() -> Vec<Case> {
@@ -97,7 +100,7 @@ impl Bits {
     /// # Errors
     /// Those of the device.
     pub fn of(gl: &Gl, times: u32) -> Result<Self> {
-        let mut runs: Vec<(Case, Result<(DensityMap, RadiusPipeline), String>)> = Vec::new();
+        let mut runs: Vec<(Case, Made)> = Vec::new();
         for case in cases() {
             let bounds = CountBounds::of_boxes(&case.counts, case.settings.search);
             let density = DensityMap::upload(gl, &case.counts, bounds)?;
@@ -167,20 +170,20 @@ fn row(renderer: &Renderer, expected: &[(String, String)]) -> Row {
             }
         }
     }
-    let mut note = format!("{}; {} times", bits.renderer, bits.times);
+    let mut notes = vec![format!("{}, {} times", bits.renderer, bits.times)];
     if refused > 0 {
-        note += &format!(", {refused} maps refused");
+        notes.push(format!("{refused} maps refused"));
     }
     if bits.differing > 0 {
-        note += &format!(", {} of them unlike the first", bits.differing);
+        notes.push(format!("{} of them unlike the first", bits.differing));
     }
     if !wrong.is_empty() {
-        note += &format!("; wrong: {}", wrong.join(", "));
+        notes.push(format!("wrong: {}", wrong.join(", ")));
     }
     let is_right = wrong.is_empty() && bits.differing == 0 && compared > 0;
     let wrong = wrong.len() as u64;
     let mut row = Row::new(id, &[promise], Verdict::kept_if(is_right));
-    (row.wrong, row.of, row.note) = (Some(wrong), Some(compared), note);
+    (row.wrong, row.of, row.note) = (Some(wrong), Some(compared), notes.join("; "));
     row
 }
 

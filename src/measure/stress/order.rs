@@ -40,7 +40,8 @@ pub(super) fn rows(gl: &Gl) -> Result<Vec<Row>> {
         let (first, second) = (f64::from(*first), f64::from(*second));
         largest = largest.max((first - second).abs() / first.abs().max(f64::from(f32::MIN_POSITIVE)));
     }
-    let sums = unlike(&|pixel| first.irradiance.values()[pixel] != second.irradiance.values()[pixel]);
+    let bits = |layers: &Layers, pixel: usize| layers.irradiance.values()[pixel].map(f32::to_bits);
+    let sums = unlike(&|pixel| bits(&first, pixel) != bits(&second, pixel));
     let row = |id: &str, wrong: u64, promise: Option<&str>| {
         let verdict = promise.map_or(Verdict::Information, |_| Verdict::kept_if(wrong == 0));
         let promises: Vec<&str> = promise.into_iter().collect();

@@ -81,7 +81,7 @@ pub const PROMISES: [Promise; 15] = [
     },
     Promise {
         id: "same-bits-again",
-        text: "so do 1, 2 and many threads, a hundred times",
+        text: "so do 1, 2 and many threads, however often",
         stated_in: "README, Devices",
     },
 ];

@@ -27,16 +27,14 @@ const BATCH: u32 = 1 << 20;
 /// The outside ratio in f32 (thesis 4.4) against whole numbers, at the counts that decide.
 pub(super) fn ratio_rows() -> Vec<Row> {
     let questions =
-        [(32, 25), (32, 1000), (32, 1875), (32, 1925), (256, 25), (32, 1_000_003), (32, (1 << 26) + 1)];
+        [(32, 25), (32, 1000), (32, 1875), (32, 1925), (64, 25), (32, 1_000_003), (32, (1 << 26) + 1)];
     let row = |(max_radius, min_photons)| {
         let (wrong, of) = misjudged_by_float_ratio(max_radius, min_photons);
         Row {
             min_photons: Some(min_photons),
             wrong: Some(wrong),
             of: Some(of),
-            note: format!(
-                "MR {max_radius}; the fewest photons that are enough for each T and I, and one less"
-            ),
+            note: format!("n {min_photons}, MR {max_radius}: decisions at the brink for each T and I"),
             ..Row::new(format!("ratio/{min_photons}/{max_radius}"), &[], Verdict::Information)
         }
     };
@@ -85,15 +83,16 @@ pub(super) fn blending_rows(gl: &Gl) -> Result<Vec<Row>> {
             Err(Error::Inexact { .. }) => Decision::Refused,
             Err(error) => return Err(error),
         };
-        let is_right = match drawn >= 1 << 24 {
-            false => lost.abs() < 0.5 && decision == Decision::Accepted,
-            true => decision == Decision::Refused,
+        let is_right = if drawn < 1 << 24 {
+            lost.abs() < 0.5 && decision == Decision::Accepted
+        } else {
+            decision == Decision::Refused
         };
         rows.push(Row {
             total: Some(drawn),
             decision: Some(decision),
-            largest_error: Some(lost),
-            note: format!("photons of one pixel; {counted} were counted"),
+            largest_error: Some(lost / counted),
+            note: format!("drawn on one pixel, {counted} counted"),
             ..Row::new(format!("blending/{drawn}"), &["blended-counts"], Verdict::kept_if(is_right))
         });
         stage.add(&surfaces, &one)?;
@@ -133,7 +132,7 @@ pub(super) fn splat_rows(gl: &Gl, extent: Extent) -> Result<Vec<Row>> {
             rows.push(Row {
                 total: Some(count.into()),
                 largest_error: Some(error.abs()),
-                note: format!("kernels over one pixel, powers {name}: relative error {error:.1e}"),
+                note: format!("kernels on one pixel, powers {name}: relative error {error:.1e}"),
                 ..Row::new(
                     format!("splat/{count}/{name}"),
                     &["splat-sum"],
