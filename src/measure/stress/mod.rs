@@ -6,8 +6,11 @@
 //! What the program refuses is computed all the same, for information: those rows say where each number breaks.
 
 mod bits;
+mod breaks;
 mod file;
 mod grid;
+mod level;
+mod number;
 mod order;
 mod promise;
 mod row;
@@ -23,7 +26,9 @@ use crate::gl::Gl;
 use crate::measure::bench::Device;
 
 pub use bits::{Bits, Case, Renderer, cases};
-pub use grid::{Break, Number, question};
+pub use breaks::Break;
+pub use level::question;
+pub use number::Number;
 pub use promise::{Judged, PROMISES, Promise};
 pub use row::{Decision, Row, Verdict};
 pub use shape::Shape;
@@ -83,7 +88,7 @@ impl Report {
             program: env!("CARGO_PKG_VERSION").to_owned(),
             device: Device::of(gl.info()),
             settings,
-            pruned: grid::pruned(settings.extent, gl.info().max_texture_size),
+            pruned: level::pruned(settings.extent, gl.info().max_texture_size),
             rows: Vec::new(),
             renderers: Vec::new(),
         }
@@ -104,7 +109,7 @@ impl Report {
     /// Where each number breaks, by the rows of wrong pixels.
     #[must_use]
     pub fn breaks(&self) -> BTreeMap<String, Break> {
-        grid::breaks(&self.rows)
+        breaks::breaks(&self.rows)
     }
 }
 
