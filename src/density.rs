@@ -4,7 +4,8 @@
 //!   seen, and before or behind that surface's plane by at most half a pixel.
 //! - Cost: one draw of points; nothing is sorted. Memory: 20 bytes a pixel.
 //! - Exact: additive blending of ones into GL_R32F counts to 2^24 a pixel, where adding 1 stops to count; a map that gets
-//!   there is refused.
+//!   there is refused (`blended-counts` of `varikernel stress`). The order of the photons changes no count, and so no radius
+//!   (`order-of-photons`).
 //! - Beside the counts it adds up the photons' power, for estimates that gather.
 
 use glam::{UVec2, Vec4};

@@ -3,14 +3,21 @@
 //! Three facts carry the rules (S counts the photons of a box, T is its area, I its area inside the map):
 //!
 //! 1. An unsigned table that wraps still gives the right S while the *box* holds less than 2^32, since the four
-//!    texels are added modulo 2^32; the total does not matter. In 16 bits, the same holds of 2^16.
+//!    texels are added modulo 2^32; the total does not matter (`u32-wraps`). In 16 bits, the same holds of 2^16
+//!    (`u16-wraps`).
 //! 2. `min(count, n)` in place of each count changes no radius: a box with a pixel of n or more holds enough either
-//!    way, and in the others nothing is clamped. Then S <= n I, so T n < 2^32 (2^16) is enough for any map at all.
+//!    way, and in the others nothing is clamped (`clamped-counts`). Then S <= n I, so T n < 2^32 (2^16) is enough for any
+//!    map at all.
 //! 3. f32 holds every whole number up to 2^24; a table in f32 is exact while its *total*, its largest entry, stays
-//!    there, and a pyramid or a brute-force sum while each box does.
+//!    there (`f32-total`), and a pyramid or a brute-force sum while each box does. In f16, the same holds of 2^11
+//!    (`f16-total`).
 //!
 //! The scaled test S T >= n I needs products only where S < n, so they fit 32 bits while T n < 2^32; past that the
-//! shaders multiply in two words.
+//! shaders multiply in two words (`wide-products`).
+//!
+//! So what is accepted is right (`accepted-is-exact`, `default-is-exact`), all else is refused before it is computed
+//! (`refused-first`), and one photon past the limits of f32, f16 and u16 can give wrong radii (`limits-are-real`). The names
+//! are those of the promises that `varikernel stress` puts to the test, and of its rows.
 
 use glam::UVec2;
 
@@ -119,6 +126,7 @@ impl CountBounds {
 const U32_MAX: u64 = u32::MAX as u64;
 const U16_MAX: u64 = u16::MAX as u64;
 const F32_MAX: u64 = 1 << 24;
+const F16_MAX: u64 = 1 << 11;
 
 /// How counts are taken in so that the sums stay right.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -170,13 +178,24 @@ pub fn plan(settings: &Settings, size: UVec2, bounds: CountBounds) -> Result<Pla
                 )
             }
         }
-        (Method::SummedAreaTable, Storage::F32) if bounds.total > F32_MAX => inexact(
-            format!(
-                "a table in f32 is exact up to {F32_MAX} photons in all, and the map may hold {}",
-                known(bounds.total)
-            ),
+        (_, Storage::F32MinusMean | Storage::F32MinusWholeMean) => inexact(
+            "a table in f32 from which the mean was subtracted is not proved exact for any map".to_owned(),
             "keep the table in u32 (storage u32)",
         ),
+        (Method::SummedAreaTable, Storage::F32 | Storage::F16) => {
+            let limit = if settings.storage == Storage::F16 { F16_MAX } else { F32_MAX };
+            if bounds.total <= limit {
+                return Ok(unclamped);
+            }
+            inexact(
+                format!(
+                    "a table in {} is exact up to {limit} photons in all, and the map may hold {}",
+                    settings.storage.name(),
+                    known(bounds.total)
+                ),
+                "keep the table in u32 (storage u32)",
+            )
+        }
         (Method::BruteForce | Method::NaiveMipmap | Method::Pyramid, Storage::F32)
             if densest_box > F32_MAX =>
         {
@@ -189,7 +208,7 @@ pub fn plan(settings: &Settings, size: UVec2, bounds: CountBounds) -> Result<Pla
                 "keep the sums in u32 (storage u32)",
             )
         }
-        (_, Storage::F32) => Ok(unclamped),
+        (_, Storage::F32 | Storage::F16) => Ok(unclamped),
     }
 }
 

@@ -43,7 +43,7 @@
 //! | module | what it holds |
 //! |---|---|
 //! | `cli`, `main` | the program, built on the public library: one file a verb |
-//! | [`measure`] | how right and how fast a result is: differences, errors of pictures, their study (`study`), timing runs (`bench`), rivals on the processor (`rivals`), the thesis's tables and claims (`thesis`), both together (`reproduce`), a page of them (`report`) |
+//! | [`measure`] | how right and how fast a result is: differences, errors of pictures, timing runs (`bench`), rivals on the processor (`rivals`), the thesis's tables and claims (`thesis`), both together (`reproduce`), a page of them (`report`), run time against error (`study`), promises about numbers put to the test (`stress`) |
 //! | `render` | scene in, picture out: the stages of a picture in order, soft shadows, what is seen in mirrors and through glass |
 //! | `bounce_map`, `gbuffer`, `shadow_map`, `density`, `splat`, `shade` | a stage of a picture each: what photons meet first, what pixels show, direct light, photons counted, kernels drawn, light added up |
 //! | `cube_map` | what is nearest around a place, rasterised |

@@ -66,8 +66,10 @@ const ARROWS: &[(&str, &[&str])] = &[
         "measure",
         &[
             "certificate",
+            "density",
             "exactness",
             "frame",
+            "gbuffer",
             "gl",
             "maps",
             "mask",
@@ -77,6 +79,7 @@ const ARROWS: &[(&str, &[&str])] = &[
             "reference",
             "render",
             "scene",
+            "splat",
             "synth",
             "view",
         ],

@@ -7,4 +7,7 @@ void main()
 {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     photons = all(lessThan(pixel, map_size)) ? wrapped(photons_at(pixel)) : SUM(0);
+#ifdef SUM_MINUS_MEAN
+    photons -= mean;
+#endif
 }

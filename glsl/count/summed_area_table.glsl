@@ -18,5 +18,5 @@ uint count_in_box(ivec2 lo, ivec2 hi)
     if (lo.x > 0 && lo.y > 0) {
         sum += entry(lo.x - 1, lo.y - 1);
     }
-    return to_count(wrapped(sum));
+    return photons_in(sum, lo, hi);
 }

@@ -19,5 +19,5 @@ uint count_in_box(ivec2 lo, ivec2 hi)
     sum -= cut.x ? left : SUM(0);
     sum -= cut.y ? below : SUM(0);
     sum += all(cut) ? corner : SUM(0);
-    return to_count(wrapped(sum));
+    return photons_in(sum, lo, hi);
 }

@@ -86,7 +86,8 @@ pub(crate) struct Args {
     #[arg(long, value_enum, value_delimiter = ',', default_value = "2,4")]
     sat_samples: Vec<SatSamples>,
 
-    /// Numbers in which summed-area tables are kept; u16 is left out where a box could hold 2^16 photons.
+    /// Numbers in which summed-area tables are kept; each is left out where it is not proved exact (u16 where a box could
+    /// hold 2^16 photons, f16 past 2^11 in all, f32-minus-mean always).
     #[arg(long, value_enum, value_delimiter = ',', default_value = "u32")]
     storage: Vec<Storage>,
 

@@ -10,6 +10,7 @@ mod radius;
 mod real_map;
 mod render;
 mod reproduce;
+mod stress;
 mod study;
 mod synth;
 
@@ -30,13 +31,14 @@ Examples:
   varikernel photons -o photons.npy            trace photons through a Cornell box
   varikernel reproduce                         the thesis's numbers from this machine
   varikernel study                             run time against error, as one page
+  varikernel stress --quick                    whether the promises about exactness hold here
   varikernel devices                           the OpenGL devices found here";
 
 /// Variable-kernel radius maps from photon density maps, exact, in OpenGL 3.3 core.
 ///
 /// For each pixel of a map of photon counts: the radius of the smallest box that holds at least n photons
-/// (E. W. Bjønnes, Oslo 2010). Exit codes: 0 done, 1 the maps differ or are not
-/// proved, 2 it could not be done.
+/// (E. W. Bjønnes, Oslo 2010). Exit codes: 0 done, 1 the maps differ, are not
+/// proved or a promise is broken, 2 it could not be done.
 #[derive(Debug, Parser)]
 #[command(version, max_term_width = 100, arg_required_else_help = true, after_help = EXAMPLES)]
 pub(crate) struct Cli {
@@ -57,6 +59,7 @@ enum Verb {
     Bench(Box<bench::Args>),
     Reproduce(reproduce::Args),
     Study(study::Args),
+    Stress(stress::Args),
     Compare(compare::Args),
     Photons(photons::Args),
     Synth(synth::Args),
@@ -66,7 +69,7 @@ enum Verb {
 /// What a verb that did its job found.
 pub(crate) enum Outcome {
     Done,
-    /// The answer to "are they equal?", or to "is it proved?", is no.
+    /// The answer to "are they equal?", "is it proved?" or "is it kept?" is no.
     Differs,
 }
 
@@ -80,6 +83,7 @@ pub(crate) fn run(cli: Cli) -> Result<Outcome> {
         Verb::Synth(args) => synth::run(&args),
         Verb::Reproduce(args) => reproduce::run(&args),
         Verb::Study(args) => study::run(&args),
+        Verb::Stress(args) => stress::run(&args),
         Verb::Devices(args) => devices::run(&args),
         Verb::Bench(args) => bench::run(&args),
     }

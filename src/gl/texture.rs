@@ -16,6 +16,8 @@ pub enum TextureFormat {
     R32Uint,
     /// GL_R32F: counts as additive blending writes them, or sums as the thesis keeps them.
     R32Float,
+    /// GL_R16F: sums of up to 2^11.
+    R16Float,
     /// GL_R16UI: sums of boxes that hold less than 2^16.
     R16Uint,
     /// GL_R8UI: masks.
@@ -36,6 +38,7 @@ impl TextureFormat {
         match self {
             Self::R32Uint => glow::R32UI,
             Self::R32Float => glow::R32F,
+            Self::R16Float => glow::R16F,
             Self::R16Uint => glow::R16UI,
             Self::R8Uint => glow::R8UI,
             Self::Rgba32Uint => glow::RGBA32UI,
@@ -48,6 +51,7 @@ impl TextureFormat {
         match self {
             Self::R32Uint => (glow::RED_INTEGER, glow::UNSIGNED_INT),
             Self::R32Float => (glow::RED, glow::FLOAT),
+            Self::R16Float => (glow::RED, glow::HALF_FLOAT),
             Self::R16Uint => (glow::RED_INTEGER, glow::UNSIGNED_SHORT),
             Self::R8Uint => (glow::RED_INTEGER, glow::UNSIGNED_BYTE),
             Self::Rgba32Uint => (glow::RGBA_INTEGER, glow::UNSIGNED_INT),
@@ -57,13 +61,13 @@ impl TextureFormat {
     }
 
     pub(crate) fn is_float(self) -> bool {
-        matches!(self, Self::R32Float | Self::Rgba32Float | Self::Depth32Float)
+        matches!(self, Self::R32Float | Self::R16Float | Self::Rgba32Float | Self::Depth32Float)
     }
 
     pub(super) fn texel_bytes(self) -> usize {
         match self {
             Self::R32Uint | Self::R32Float | Self::Depth32Float => 4,
-            Self::R16Uint => 2,
+            Self::R16Uint | Self::R16Float => 2,
             Self::R8Uint => 1,
             Self::Rgba32Uint | Self::Rgba32Float => 16,
         }
@@ -75,6 +79,7 @@ impl TextureFormat {
         match self {
             Self::R32Uint => "GL_R32UI",
             Self::R32Float => "GL_R32F",
+            Self::R16Float => "GL_R16F",
             Self::R16Uint => "GL_R16UI",
             Self::R8Uint => "GL_R8UI",
             Self::Rgba32Uint => "GL_RGBA32UI",

@@ -5,8 +5,9 @@ use crate::error::Result;
 use crate::gl::{Gl, StateGuard, Vertices};
 use crate::photon::PhotonPoint;
 
-/// Photons in a buffer: as many as the table of their areas has entries.
-pub(crate) const CHUNK: usize = 1 << 20;
+/// Photons in a buffer: as many as the table of their areas has entries, and few enough that sums of one buffer's kernels
+/// stay exact to about 2^-9 (see `splat`).
+pub(crate) const CHUNK: usize = 1 << 16;
 
 /// Photons on the GPU.
 #[derive(Debug)]

@@ -19,6 +19,8 @@ pub mod reproduce;
 pub mod rivals;
 mod statistics;
 #[cfg(feature = "report")]
+pub mod stress;
+#[cfg(feature = "report")]
 pub mod study;
 mod summary;
 #[cfg(feature = "report")]

@@ -4,6 +4,7 @@
 //! thesis ran.
 
 mod faults;
+mod names;
 #[cfg(feature = "render")]
 mod picture;
 
@@ -206,6 +207,26 @@ pub enum Storage {
     U32,
     /// 16-bit unsigned integer: right while every box holds less than 2^16. For the summed-area table.
     U16,
+    /// 16-bit float: whole numbers up to 2^11. For the summed-area table, built by doubling.
+    F16,
+    /// 32-bit float, with the map's mean subtracted from each count and added back by the box's area (Hensley et al. 2005):
+    /// never proved exact. For the summed-area table, built by doubling.
+    F32MinusMean,
+    /// The same with the mean rounded to a whole number.
+    F32MinusWholeMean,
+}
+
+impl Storage {
+    /// Whether sums are whole numbers that wrap; others are floats that round.
+    #[must_use]
+    pub fn is_integer(self) -> bool {
+        matches!(self, Self::U32 | Self::U16)
+    }
+
+    /// Whether only the summed-area table, without the listings' faults, is kept in it.
+    fn is_for_tables_alone(self) -> bool {
+        !matches!(self, Self::F32 | Self::U32)
+    }
 }
 
 /// Variations of a method that the thesis leaves to future work in chapter 6, to be timed: each gives the same radii.
@@ -368,7 +389,7 @@ impl Settings {
             });
         }
         if self.sat_build == SatBuild::Scan
-            && self.storage == Storage::F32
+            && !self.storage.is_integer()
             && self.method == Method::SummedAreaTable
         {
             return Err(Error::Setting {
@@ -377,15 +398,16 @@ impl Settings {
                 reason: "a scan adds integers; keep the sums in u32, or build by doubling".to_owned(),
             });
         }
-        if self.storage == Storage::U16 {
+        if self.storage.is_for_tables_alone() {
             let refuse = |reason: &str| {
-                Err(Error::Setting { name: "storage", value: "u16".to_owned(), reason: reason.to_owned() })
+                let value = self.storage.name().to_owned();
+                Err(Error::Setting { name: "storage", value, reason: reason.to_owned() })
             };
             if self.method != Method::SummedAreaTable {
-                return refuse("only the summed-area table, whose sums may wrap, is kept in 16 bits");
+                return refuse("only the summed-area table is kept in it; keep the sums in u32 or f32");
             }
             if self.faults != Faults::NONE {
-                return refuse("the listings do not wrap their sums; run them in u32 or f32");
+                return refuse("the listings keep plain sums; run them in u32 or f32");
             }
         }
         if self.search.order == Order::Bracketed {

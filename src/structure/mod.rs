@@ -140,7 +140,8 @@ pub(crate) fn storage(settings: &Settings) -> Storage {
 /// The texture format of the sums.
 fn format(settings: &Settings) -> TextureFormat {
     match storage(settings) {
-        Storage::F32 => TextureFormat::R32Float,
+        Storage::F32 | Storage::F32MinusMean | Storage::F32MinusWholeMean => TextureFormat::R32Float,
+        Storage::F16 => TextureFormat::R16Float,
         Storage::U32 => TextureFormat::R32Uint,
         Storage::U16 => TextureFormat::R16Uint,
     }
@@ -148,9 +149,12 @@ fn format(settings: &Settings) -> TextureFormat {
 
 /// Adds the number type of the sums.
 fn number(source: ShaderSource, settings: &Settings) -> ShaderSource {
+    let storage = storage(settings);
     source
-        .define_if(storage(settings) == Storage::F32, "SUM_F32")
-        .define_if(storage(settings) == Storage::U16, "SUM_U16")
+        .define_if(!storage.is_integer(), "SUM_FLOAT")
+        .define_if(storage == Storage::U16, "SUM_U16")
+        .define_if(storage == Storage::F16, "SUM_F16")
+        .define_if(matches!(storage, Storage::F32MinusMean | Storage::F32MinusWholeMean), "SUM_MINUS_MEAN")
         .file(crate::gl::glsl!("common/sum.glsl"))
 }
 

@@ -10,6 +10,7 @@ mod files;
 mod outputs;
 mod photons;
 mod render;
+mod stress;
 mod synth;
 
 use std::collections::BTreeMap;

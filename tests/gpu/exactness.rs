@@ -2,8 +2,10 @@
 
 use glam::UVec2;
 use varikernel::measure::Difference;
-use varikernel::settings::{Edges, Exactness, Faults, Method, Order, SatBuild, Search, Settings, Storage};
-use varikernel::{CountBounds, DensityMap, Error, Gl, Image, RadiusPipeline, reference};
+use varikernel::settings::{
+    Edges, Exactness, Faults, Method, Order, SatBuild, SatSamples, Search, Settings, Storage,
+};
+use varikernel::{Changed, CountBounds, DensityMap, Error, Frame, Gl, Image, RadiusPipeline, reference};
 
 use crate::support::{Random, assert_same, egl, exact_variants, on_gpu, random_map, search};
 
@@ -238,4 +240,73 @@ fn settings_outside_their_range_are_refused_by_name() {
     let format = varikernel::gl::TextureFormat::R32Uint;
     let result = RadiusPipeline::new(&gl, too_large, format, Settings::default());
     assert!(matches!(result, Err(Error::TooLarge { .. })));
+}
+
+#[test]
+fn f16_is_exact_up_to_2_to_11_and_refused_past_it() {
+    let gl = egl();
+    for edges in [Edges::Zero, Edges::Scale] {
+        for sat_samples in SatSamples::ALL {
+            let search = search(20, 6, edges);
+            let settings = Settings { search, sat_samples, ..table(Storage::F16) };
+            let map = random_map(37, 29, 3);
+            let total: u32 = map.values().iter().sum();
+            assert!(total > 900 && total < 1 << 11, "{total}");
+            let expected = reference::radius(&map, search);
+            assert_same(&on_gpu(&gl, &map, settings), &expected, &format!("{settings:?}"));
+            let dense = random_map(37, 29, 9);
+            assert!(refused(&gl, &dense, settings));
+            let waived = Settings { exactness: Exactness::Waived, ..settings };
+            let expected = reference::radius(&dense, search);
+            let found = on_gpu(&gl, &dense, waived);
+            let difference = Difference::between(&found.radius, &expected.radius).unwrap();
+            assert!(difference.wrong_pixels > 0, "the refusal would be needless");
+        }
+    }
+}
+
+#[test]
+fn sums_without_the_mean_are_never_taken_for_exact_though_small_ones_are() {
+    let gl = egl();
+    for storage in [Storage::F32MinusMean, Storage::F32MinusWholeMean] {
+        for edges in [Edges::Zero, Edges::Scale] {
+            let search = search(40, 6, edges);
+            let settings = Settings { search, ..table(storage) };
+            let (map, more) = (random_map(37, 29, 9), random_map(37, 29, 4));
+            assert!(refused(&gl, &map, settings));
+            let waived = Settings { exactness: Exactness::Waived, ..settings };
+            let expected = reference::radius(&map, search);
+            assert_same(&on_gpu(&gl, &map, waived), &expected, &format!("{waived:?}"));
+            let bracketed = Settings { search: Search { order: Order::Bracketed, ..search }, ..waived };
+            assert_same(&on_gpu(&gl, &map, bracketed), &expected, &format!("{bracketed:?}"));
+
+            // Photons that are added bring a mean of their own.
+            let upload = |map| DensityMap::upload(&gl, map, CountBounds::of(map, search)).unwrap();
+            let (first, added) = (upload(&map), upload(&more));
+            let mut pipeline = RadiusPipeline::new(&gl, map.size(), first.format(), waived).unwrap();
+            pipeline.render(&first).unwrap();
+            let radii = pipeline.update(&Frame { changed: Changed::Added, ..Frame::new(&added) }).unwrap();
+            let both = Image::from_fn(map.size(), |x, y| map.at(x, y) + more.at(x, y));
+            assert_eq!(radii.read().unwrap(), reference::radius(&both, search).radius, "{waived:?}");
+            assert_ne!(expected.radius, reference::radius(&both, search).radius);
+        }
+        for settings in [
+            Settings { method: Method::Pyramid, ..table(storage) },
+            Settings { sat_build: SatBuild::Scan, ..table(storage) },
+        ] {
+            assert!(matches!(settings.validate(), Err(Error::Setting { .. })), "{settings:?}");
+        }
+    }
+}
+
+/// A table by doubling.
+fn table(storage: Storage) -> Settings {
+    let order = Search { order: Order::Binary, ..Settings::default().search };
+    Settings {
+        search: order,
+        storage,
+        sat_build: SatBuild::Doubling,
+        limited_mask: true,
+        ..Settings::default()
+    }
 }

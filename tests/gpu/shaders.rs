@@ -40,7 +40,8 @@ fn all_settings() -> Vec<Settings> {
     for method in Method::ALL {
         for order in [Order::Forward, Order::Binary, Order::Bracketed] {
             for edges in [Edges::Zero, Edges::Scale] {
-                for storage in [Storage::F32, Storage::U32, Storage::U16] {
+                for storage in [Storage::F32, Storage::U32, Storage::U16, Storage::F16, Storage::F32MinusMean]
+                {
                     // The second n needs products of 64 bits.
                     for (min_photons, limited_mask) in [(25, true), (25, false), (u32::MAX, false)] {
                         let search = Search { order, ..search(min_photons, 32, edges) };

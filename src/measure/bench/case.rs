@@ -117,17 +117,13 @@ impl Case {
         let builds = is_table && stage != Stage::Search;
         let sat_samples =
             (builds && settings.sat_build == SatBuild::Doubling).then_some(settings.sat_samples);
-        let mut variant = match (method, sat_samples) {
-            (Method::BruteForce, _) => "brute-force".to_owned(),
-            (Method::NaiveMipmap, _) => "naive-mipmap".to_owned(),
-            (Method::AveragedMipmap, _) => "averaged-mipmap".to_owned(),
-            (Method::Pyramid, _) => "pyramid".to_owned(),
-            (Method::SummedAreaTable, None) if builds => "sat-scan".to_owned(),
-            (Method::SummedAreaTable, None) => "sat".to_owned(),
-            (Method::SummedAreaTable, Some(samples)) => format!("sat-doubling-{}", samples.count()),
+        let mut variant = match sat_samples {
+            Some(samples) => format!("sat-doubling-{}", samples.count()),
+            None if builds => "sat-scan".to_owned(),
+            None => method.name().to_owned(),
         };
         if settings.storage != base {
-            variant += storage_suffix(settings.storage);
+            variant = format!("{variant}-{}", settings.storage.name());
         }
         let searches = stage != Stage::Build;
         Self {
@@ -153,38 +149,12 @@ impl fmt::Display for Case {
             write!(formatter, " {}", self.variant)?;
         }
         if let Some(order) = self.search {
-            write!(formatter, " {}", order_name(order))?;
+            write!(formatter, " {}", order.name())?;
         }
         if let (Some(n), Some(radius), Some(edges)) = (self.min_photons, self.max_radius, self.edges) {
-            write!(formatter, " n {n} MR {radius} edges {}", edges_name(edges))?;
+            write!(formatter, " n {n} MR {radius} edges {}", edges.name())?;
         }
         write!(formatter, ", {} {width} x {height}", self.map)
-    }
-}
-
-/// The name in files.
-pub(super) fn order_name(order: Order) -> &'static str {
-    match order {
-        Order::Forward => "forward",
-        Order::Binary => "binary",
-        Order::Bracketed => "bracketed",
-    }
-}
-
-/// The name in files.
-pub(super) fn edges_name(edges: Edges) -> &'static str {
-    match edges {
-        Edges::Zero => "zero",
-        Edges::Scale => "scale",
-    }
-}
-
-/// The end of a variant's name.
-fn storage_suffix(storage: Storage) -> &'static str {
-    match storage {
-        Storage::F32 => "-f32",
-        Storage::U32 => "-u32",
-        Storage::U16 => "-u16",
     }
 }
 

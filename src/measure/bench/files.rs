@@ -4,12 +4,12 @@ use std::fs;
 use std::io;
 use std::path::Path;
 
-use super::case::{Case, edges_name, order_name};
+use super::case::Case;
 use super::report::{Report, Run};
 use crate::error::{Error, Result};
 use crate::image::write_atomically;
 use crate::measure::Statistics;
-use crate::settings::Method;
+use crate::settings::{Edges, Method, Order};
 
 impl Report {
     /// Reads what [`save`](Self::save) wrote.
@@ -90,13 +90,13 @@ fn csv_record(run: &Run) -> [String; CSV_COLUMNS.len()] {
     [
         stage.name().to_owned(),
         variant.clone(),
-        search.map_or("", order_name).to_owned(),
+        search.map_or("", Order::name).to_owned(),
         map.clone(),
         size[0].to_string(),
         size[1].to_string(),
         number(*min_photons),
         number(*max_radius),
-        edges.map_or("", edges_name).to_owned(),
+        edges.map_or("", Edges::name).to_owned(),
         run.sets.len().to_string(),
         all.count.to_string(),
         all.median_ms.to_string(),

@@ -125,7 +125,7 @@ impl BenchSettings {
         for &storage in storages {
             for &build in &self.sat_builds {
                 // A scan adds integers.
-                if (storage, build) != (Storage::F32, SatBuild::Scan) {
+                if storage.is_integer() || build == SatBuild::Doubling {
                     builds.extend(samples_of(&build).into_iter().map(|samples| (storage, build, samples)));
                 }
             }

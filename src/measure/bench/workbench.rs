@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use super::case::{Stage, Work, order_name};
+use super::case::{Stage, Work};
 use super::rival::{self, Rivals};
 use super::scene::Scene;
 use super::settings::{BenchSettings, MapSource};
@@ -211,7 +211,7 @@ impl Workbench {
     pub(super) fn planned(&self, work: Work) -> Option<String> {
         let Work::Planned(settings) = work else { return None };
         let Choice { settings, reason } = self.choice(settings);
-        Some(format!("{}: {reason}", order_name(settings.search.order)))
+        Some(format!("{}: {reason}", settings.search.order.name()))
     }
 
     fn choice(&self, settings: Settings) -> &Choice {

@@ -40,13 +40,23 @@ impl Doubling {
     }
 
     /// Fills `table` from a density map.
-    pub(super) fn build(&mut self, density: &DensityMap, plan: Plan, table: &mut Target) -> Result<()> {
+    pub(super) fn build(
+        &mut self,
+        density: &DensityMap,
+        plan: Plan,
+        mean: Option<f32>,
+        table: &mut Target,
+    ) -> Result<()> {
         let size = density.size();
-        Pass::new(SEED, &self.seed)
+        let seed = Pass::new(SEED, &self.seed)
             .read("density", density.texture())
             .set("count_limit", plan.count_limit)
-            .set("map_size", size.as_ivec2())
-            .fill(table)?;
+            .set("map_size", size.as_ivec2());
+        match mean {
+            Some(mean) => seed.set("mean", mean),
+            None => seed,
+        }
+        .fill(table)?;
 
         let (horizontal, vertical) =
             if self.settings.faults.swapped_axes { (IVec2::Y, IVec2::X) } else { (IVec2::X, IVec2::Y) };

@@ -6,7 +6,7 @@
 //!   two for a bracketed one.
 //! - Memory: the table (4 bytes an entry, 2 in u16) beside the density map, and what its build needs.
 //! - Exact: u32 and u16 while each box holds less than 2^32 or 2^16, even where the table wraps; f32 while the total
-//!   is at most 2^24.
+//!   is at most 2^24, f16 while it is at most 2^11; less the mean, f32 is not proved for any map.
 //! - u16 against u32, on llvmpipe at 512² to 2048²: a scan 2 to 18 % faster, but a bracketed search 4 to 11 % slower and a
 //!   binary one 24 to 28 %, since its texels are widened when read. It saves memory there, not time.
 //! - Against the thesis: u32 is the default, which its drivers did not support; reads outside the table, which GLSL
@@ -25,7 +25,7 @@ use crate::exactness::Plan;
 use crate::frame::Rectangle;
 use crate::gl::{Gl, Pass, Program, ShaderSource, Target, Texture, TextureFormat, glsl};
 use crate::maps::DensityMap;
-use crate::settings::{SatBuild, Settings, Variation};
+use crate::settings::{SatBuild, Settings, Storage, Variation};
 
 const ADDITION: &str = "sat addition";
 
@@ -36,6 +36,8 @@ pub(crate) struct SummedAreaTable {
     build: Build,
     /// What adding photons needs, from the first time on.
     addition: Option<Addition>,
+    /// What was taken from each count, if the storage is one without the mean.
+    mean: Option<f32>,
     settings: Settings,
 }
 
@@ -65,13 +67,15 @@ impl SummedAreaTable {
                 SatBuild::Scan => Build::Scan(Box::new(scan::Scan::new(gl, size, density, settings)?)),
             },
             addition: None,
+            mean: None,
             settings: *settings,
         })
     }
 
     /// Fills the table from a density map, of which `changed` differs from the one before.
     pub(super) fn build(&mut self, density: &DensityMap, plan: Plan, changed: Rectangle) -> Result<()> {
-        self.build.fill(density, plan, changed, &mut self.table)
+        self.mean = mean(density, &self.settings);
+        self.build.fill(density, plan, changed, self.mean, &mut self.table)
     }
 
     /// Adds the photons of a density map to those of the table: the table of a sum is the sum of the tables.
@@ -87,7 +91,9 @@ impl SummedAreaTable {
             });
         }
         let Some(Addition { program, added, spare }) = &mut self.addition else { return Ok(()) };
-        self.build.fill(density, plan, Rectangle::whole(density.size()), added)?;
+        let of_added = mean(density, &self.settings);
+        self.build.fill(density, plan, Rectangle::whole(density.size()), of_added, added)?;
+        self.mean = self.mean.zip(of_added).map(|(before, added)| before + added);
         Pass::new(ADDITION, program)
             .read("before", self.table.texture())
             .read("added", added.texture())
@@ -102,6 +108,10 @@ impl SummedAreaTable {
 
     pub(super) fn read_by<'a>(&'a self, pass: Pass<'a>) -> Pass<'a> {
         let pass = pass.read("table", self.table.texture());
+        let pass = match self.mean {
+            Some(mean) => pass.set("mean", mean),
+            None => pass,
+        };
         if self.settings.faults.in_table_sampling() {
             pass.set("table_size", self.table.size().as_ivec2())
         } else {
@@ -116,13 +126,30 @@ impl Build {
         density: &DensityMap,
         plan: Plan,
         changed: Rectangle,
+        mean: Option<f32>,
         table: &mut Target,
     ) -> Result<()> {
         match self {
             // Two textures take turns, so that neither holds what did not change.
-            Self::Doubling(doubling) => doubling.build(density, plan, table),
+            Self::Doubling(doubling) => doubling.build(density, plan, mean, table),
             Self::Scan(scan) => scan.build(density, plan, changed, table),
         }
+    }
+}
+
+/// What the storage takes from each count: the mean of the map, as far as its total is known.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_precision_loss,
+    reason = "rounding is what it is about"
+)]
+fn mean(density: &DensityMap, settings: &Settings) -> Option<f32> {
+    let (pixels, total) = (density.size().as_dvec2().element_product(), density.bounds().total);
+    let mean = if total == u64::MAX { 0.0 } else { total as f64 / pixels };
+    match settings.storage {
+        Storage::F32MinusMean => Some(mean as f32),
+        Storage::F32MinusWholeMean => Some(mean.round() as f32),
+        Storage::F32 | Storage::U32 | Storage::U16 | Storage::F16 => None,
     }
 }
 

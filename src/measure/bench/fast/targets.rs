@@ -6,7 +6,7 @@
 use super::rows::Rows;
 use super::{CAUSTIC, FastSuite, MAX_RADII, MORE_RADII, MOSTLY_EMPTY, SITUATION_RADIUS, SPARSE};
 use crate::measure::Unit;
-use crate::measure::bench::case::{Case, Work, edges_name};
+use crate::measure::bench::case::{Case, Work};
 use crate::measure::bench::report::{Report, Run};
 use crate::measure::bench::situation::Situation;
 use crate::measure::bench::target::{Bound, Side, Target};
@@ -83,7 +83,7 @@ impl Judge<'_> {
         let questions = [Edges::Scale, Edges::Zero].into_iter().flat_map(all_radii);
         let times = questions.map(|(radius, edges)| {
             let time = self.time(&self.rows.search(Order::Bracketed, radius, edges))?;
-            Some((time, format!("MR {radius}, edges {}", edges_name(edges))))
+            Some((time, format!("MR {radius}, edges {}", edges.name())))
         });
         let slowest = times.collect::<Option<Vec<_>>>().and_then(|times| {
             times.into_iter().reduce(|slowest, next| if next.0 > slowest.0 { next } else { slowest })
