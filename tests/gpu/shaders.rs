@@ -11,7 +11,8 @@ use varikernel::gl::{ShaderSource, TextureFormat};
 use varikernel::measure::Unit;
 use varikernel::pipeline::shader_sources;
 use varikernel::settings::{
-    Edges, Faults, Matching, Method, Order, SatBuild, SatSamples, Search, Settings, Split, Storage, Variation,
+    Edges, Exactness, Faults, Matching, Method, Order, SatBuild, SatSamples, Search, Settings, Split,
+    Storage, Variation,
 };
 use varikernel::{
     AdaptivePipeline, CountBounds, DensityMap, Gl, MaskMaker, RadiusPipeline, context, reference,
@@ -144,9 +145,13 @@ fn every_method_runs_on_the_commands_of_3_3_core_alone() {
         for settings in all_settings() {
             let is_usual = settings.search.min_photons == 25 && settings.limited_mask;
             if is_usual && settings.faults == Faults::NONE && !settings.masked {
+                // Right on a map as small as this one, though not proved.
+                let is_provable = settings.storage != Storage::F32MinusMean;
+                let exactness = if is_provable { settings.exactness } else { Exactness::Waived };
+                let settings = Settings { exactness, ..settings };
                 let mut pipeline = RadiusPipeline::new(&gl, map.size(), map.format(), settings).unwrap();
                 let radii = pipeline.render(&map).unwrap().read().unwrap();
-                if settings.method == Method::SummedAreaTable {
+                if settings.method == Method::SummedAreaTable && is_provable {
                     assert!(pipeline.certify(&map).unwrap().is_proved(), "{settings:?}");
                 }
                 if settings.method.is_exact() {
