@@ -9,7 +9,8 @@
 //! - Glass and mirrors cast hard shadows: photons bring the light that passes them.
 //! - Places are the same for all pixels: few of them give steps, where rays give noise.
 //! - Cost: for each place a draw of the scene and one pass over the picture for each side of the cube that it shines through:
-//!   five for area lights, one for a narrow cone. Memory: 16 bytes a pixel, 2 MiB, and 48 bytes for each primitive.
+//!   five for area lights, one for a narrow cone. On llvmpipe that is about twice the processor time of as many rays
+//!   (`render cornell-boxes --photons 1e3`: 3.3 s against 1.6 s in all). Memory: 16 bytes a pixel, 2 MiB, and 48 bytes for each primitive.
 
 use glam::{UVec2, Vec3, Vec4};
 

@@ -7,9 +7,11 @@ use anyhow::{Result, bail};
 use varikernel::context;
 use varikernel::image::{check_writable, write_atomically};
 use varikernel::measure::bench::{PictureReport, PictureRow, PictureSuite};
+use varikernel::render::Progress;
 
 use super::table::{align_right, device_facts, new_table, three_digits};
-use super::{Args, progress_bar, targets};
+use super::{Args, targets};
+use crate::cli::render::Bar;
 use crate::cli::{Outcome, output};
 
 pub(super) fn run(args: &Args) -> Result<Outcome> {
@@ -31,11 +33,9 @@ pub(super) fn run(args: &Args) -> Result<Outcome> {
     let gl = context::open(&args.device)?;
     let budget = args.budget.unwrap_or(Duration::from_secs(60));
     let suite = PictureSuite { size: size.to_array(), photons: args.photons, ..PictureSuite::default() };
-    let bar = progress_bar();
-    bar.set_length(1000);
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of 1000")]
-    let report = suite.run(&gl, budget, &mut |done| bar.set_position((1000.0 * done) as u64))?;
-    bar.finish_and_clear();
+    let bar = Bar::new();
+    let report = suite.run(&gl, budget, &mut |done| bar.show(Progress { stage: "bench", done }))?;
+    bar.finish();
     if let Some(path) = &args.json {
         let text = serde_json::to_string_pretty(&report)?;
         write_atomically(path, |file| writeln!(file, "{text}"))?;
