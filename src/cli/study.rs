@@ -1,7 +1,7 @@
 //! `varikernel study`: run time against error.
 
 use std::fs;
-use std::io::Write as _;
+use std::io::{ErrorKind, Write as _};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
@@ -9,7 +9,7 @@ use anyhow::{Context as _, Result};
 use indicatif::{ProgressBar, ProgressStyle};
 use varikernel::context::{self, DeviceChoice};
 use varikernel::image::{check_writable, write_atomically};
-use varikernel::measure::study::{self, Study, StudySettings, pareto};
+use varikernel::measure::study::{self, Study, StudySettings};
 
 use super::{Outcome, output, real_map};
 
@@ -31,7 +31,7 @@ pub(crate) struct Args {
     #[command(flatten)]
     extent: Extent,
 
-    /// Go on with the study.json in the folder; the other options have to be the same again.
+    /// Go on with the study.partial.json in the folder, or with its study.json; the other options have to be the same again.
     #[arg(long)]
     resume: bool,
 
@@ -74,12 +74,12 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
         .with_context(|| format!("can't make the folder {}", args.output.display()))?;
     let files = Files { folder: &args.output };
     files.check()?;
-    let path = args.output.join("study.json");
-    let earlier = if args.resume { Some(Study::load(&path)?) } else { None };
+    let earlier = if args.resume { Some(files.load()?) } else { None };
     let gl = context::open(&args.device)?;
-    if let Some(earlier) = &earlier {
-        earlier.check_resumable(&path, &Study::begin(&gl, &settings))?;
+    if let Some((earlier, path)) = &earlier {
+        earlier.check_resumable(path, &Study::begin(&gl, &settings))?;
     }
+    let earlier = earlier.map(|(study, _)| study);
 
     let real = real_map::read()?;
     let bar = progress_bar();
@@ -89,7 +89,7 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
         bar.set_position((1000.0 * progress.done) as u64);
         bar.set_message(progress.what.clone());
         if saved.elapsed() > SAVE_EVERY {
-            study.save(&path)?;
+            study.save(&files.partial())?;
             saved = Instant::now();
         }
         Ok(())
@@ -97,7 +97,7 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     bar.finish_and_clear();
     files.write(&study)?;
     if args.json {
-        output::print_json(&study)?;
+        output::print_json(&study.with_summary())?;
     } else {
         print(&study, args)?;
     }
@@ -110,6 +110,18 @@ struct Files<'a> {
 }
 
 impl Files<'_> {
+    /// What is there until all is: a whole study of before is not touched by one that is never finished.
+    fn partial(&self) -> PathBuf {
+        self.folder.join("study.partial.json")
+    }
+
+    /// The study to go on with, and its file: an unfinished one if there is one.
+    fn load(&self) -> Result<(Study, PathBuf)> {
+        let partial = self.partial();
+        let path = if partial.exists() { partial } else { self.folder.join("study.json") };
+        Ok((Study::load(&path)?, path))
+    }
+
     fn check(&self) -> Result<()> {
         for name in ["study.json", "study.csv", "study.html"] {
             check_writable(&self.folder.join(name))?;
@@ -122,7 +134,11 @@ impl Files<'_> {
         study.save_csv(&self.folder.join("study.csv"))?;
         let page = study.html(&output::command());
         write_atomically(&self.folder.join("study.html"), |file| file.write_all(page.as_bytes()))?;
-        Ok(())
+        match fs::remove_file(self.partial()) {
+            Err(error) if error.kind() != ErrorKind::NotFound => Err(error)
+                .with_context(|| format!("can't remove {}, which is done with", self.partial().display())),
+            _ => Ok(()),
+        }
     }
 }
 
@@ -134,11 +150,10 @@ fn progress_bar() -> ProgressBar {
 
 /// What to choose, in words; the rest is in the files.
 fn print(study: &Study, args: &Args) -> Result<()> {
-    if let Some((question, answers)) = study.radii.first() {
-        let overall = pareto::overall(&answers.rows, *question);
-        let mut rows = vec![
-            ["way to a radius map, on the front", "copies", "wrong, %", "mean error, px"].map(str::to_owned),
-        ];
+    let summary = study.summary();
+    if let Some((_, overall)) = summary.radii.first() {
+        let names = ["way to a radius map, on the front", "copies", "wrong, %", "mean error, px"];
+        let mut rows = vec![names.map(str::to_owned)];
         rows.extend(overall.iter().filter(|one| one.on_front).map(|one| {
             [
                 one.variant.to_string(),
@@ -149,6 +164,7 @@ fn print(study: &Study, args: &Args) -> Result<()> {
         }));
         output::print_rows(&rows)?;
     }
-    output::print_sentences(&study.words())?;
+    output::print_sentences(&summary.density)?;
+    output::print_sentences(&summary.pictures)?;
     output::print(&format!("written: {}", args.output.join("study.html").display()))
 }

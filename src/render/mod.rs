@@ -18,6 +18,7 @@ pub use reference::Reference;
 pub use stages::Stages;
 pub use traced::first_hits;
 
+use bytemuck::Zeroable as _;
 use glam::{DVec3, UVec2, Vec3};
 
 use crate::cube_map;
@@ -63,6 +64,11 @@ pub struct Renderer {
     traced: Traced,
     /// Made for the first picture, and anew for one with another n or MR.
     radii: Option<RadiusPipeline>,
+    /// Whether its radii are to be searched again although they are there.
+    searches_again: bool,
+    /// Of the kernel that was drawn last, for radii from a map and for fixed ones.
+    splats: [Option<(Kernel, SplatStage)>; 2],
+    shade: ShadeStage,
 }
 
 impl Renderer {
@@ -125,6 +131,7 @@ impl Renderer {
         density.add(&surfaces, &traced.points)?;
         Ok(Self {
             gl: gl.clone(),
+            shade: ShadeStage::new(gl, surfaces.size())?,
             size: surfaces.size(),
             surfaces,
             density,
@@ -132,6 +139,8 @@ impl Renderer {
             bent,
             traced,
             radii: None,
+            searches_again: false,
+            splats: [None, None],
         })
     }
 
@@ -155,18 +164,19 @@ impl Renderer {
             RadiusChoice::Variable => {
                 let pipeline = searched.insert(self.radius_pipeline(settings, &density)?);
                 // The photons are those of the picture before, if there was one.
-                let frame = Frame { changed: Changed::Nothing, ..Frame::new(&density) };
-                let radii = pipeline.update(&frame)?;
+                let searches_again = std::mem::take(&mut self.searches_again);
+                let changed = if searches_again { Changed::Everything } else { Changed::Nothing };
+                let radii = pipeline.update(&Frame { changed, ..Frame::new(&density) })?;
                 (ChosenRadius::Map(radii), Wanted::Holding(settings.min_photons, settings.max_radius))
             }
         };
         let fixed = matches!(chosen, ChosenRadius::Fixed(_));
         self.light.seen_through =
             seen_through(self.surfaces.view(), &self.bent, self.traced.grid.as_ref(), width, settings.kernel);
-        let mut shade = ShadeStage::new(&self.gl, self.size)?;
+        let shade = &mut self.shade;
         let (shaded, irradiance) = match settings.estimate {
             Estimate::Splat => {
-                let mut stage = SplatStage::new(&self.gl, self.size, settings.kernel, fixed)?;
+                let stage = splat_stage(&self.gl, self.size, &mut self.splats, settings.kernel, fixed)?;
                 let irradiance = stage.splat(&self.surfaces, &self.traced.points, chosen)?;
                 (shade.shade(&self.surfaces, irradiance, &self.light)?, irradiance.read()?)
             }
@@ -201,6 +211,33 @@ impl Renderer {
         let account = self.account(&position, &normal, &irradiance, &layers.limited)?;
         self.radii = searched.or(self.radii.take());
         Ok((layers, account))
+    }
+
+    /// Compiles and allocates what a splat with these settings needs, so that the next picture takes as long as those after
+    /// it: radii are searched, but not kept, and a photon that is nowhere is drawn.
+    ///
+    /// # Errors
+    /// As [`picture`](Self::picture).
+    pub fn warm_up(&mut self, settings: &PictureSettings) -> Result<()> {
+        settings.validate()?;
+        let mut nowhere = PhotonPoints::new(&self.gl);
+        nowhere.upload(&[PhotonPoint::zeroed()])?;
+        let density = self.density.map()?;
+        let fixed = matches!(settings.radius, RadiusChoice::Fixed(_));
+        let mut searched = None;
+        let chosen = match settings.radius {
+            RadiusChoice::Fixed(radius) => ChosenRadius::Fixed(radius),
+            RadiusChoice::Variable => {
+                let pipeline = searched.insert(self.radius_pipeline(settings, &density)?);
+                self.searches_again = true;
+                ChosenRadius::Map(pipeline.render(&density)?)
+            }
+        };
+        let stage = splat_stage(&self.gl, self.size, &mut self.splats, settings.kernel, fixed)?;
+        let irradiance = stage.splat(&self.surfaces, &nowhere, chosen)?;
+        self.shade.shade(&self.surfaces, irradiance, &self.light)?;
+        self.radii = searched.or(self.radii.take());
+        Ok(())
     }
 
     /// The pipeline of the picture before, with its radii, if it answers the same question; else a new one.
@@ -257,6 +294,22 @@ impl Renderer {
             limited_share: f64::from(ended) / f64::from(diffuse.max(1)),
         })
     }
+}
+
+/// The stage that was used last with such radii, if its kernel is the same; else a new one.
+fn splat_stage<'a>(
+    gl: &Gl,
+    size: UVec2,
+    stages: &'a mut [Option<(Kernel, SplatStage)>; 2],
+    kernel: Kernel,
+    fixed: bool,
+) -> Result<&'a mut SplatStage> {
+    let slot = &mut stages[usize::from(fixed)];
+    let stage = match slot.take().filter(|(of, _)| *of == kernel) {
+        Some(stage) => stage,
+        None => (kernel, SplatStage::new(gl, size, kernel, fixed)?),
+    };
+    Ok(&mut slot.insert(stage).1)
 }
 
 /// Area that a pixel covers on its surface, in square scene units; as `area_on` in `common/surfaces.glsl`.

@@ -22,7 +22,7 @@ fn question() -> Question {
 }
 
 fn answers(maps: &[MapSource]) -> Answers {
-    radii::answer(&crate::egl(), question(), maps, 0, &mut |_, _| Ok(())).unwrap()
+    radii::answer(&crate::egl(), question(), maps, 0, Answers::default(), &mut |_, _, _| Ok(())).unwrap()
 }
 
 fn map(kind: Kind) -> MapSource {
@@ -144,6 +144,10 @@ fn run(settings: &StudySettings, earlier: Option<Study>) -> Study {
     study::run(&crate::egl(), settings, ("real", &real), earlier, &mut |_, _| Ok(())).unwrap()
 }
 
+fn answers_of(study: &Study) -> Vec<RadiusRow> {
+    study.radii[0].1.rows.clone()
+}
+
 /// The file without its times.
 fn errors(study: &Study, folder: &Path) -> Vec<Vec<String>> {
     let path = folder.join("study.csv");
@@ -163,14 +167,17 @@ fn errors_are_the_same_at_each_run_and_an_interrupted_study_goes_on() {
     let mut loaded = Study::load(&path).unwrap();
     assert!(loaded == first, "a file holds every bit");
 
-    // Cut off before the density, and in the middle of the pictures.
+    // Cut off in the middle of the radii, before the density, and in the middle of the pictures.
+    let answers = &mut loaded.radii[0].1;
+    answers.rows.truncate(4 * 20);
+    answers.left_out.clear();
     loaded.density.clear();
     loaded.references.clear();
     loaded.pictures.truncate(3);
     let rows = loaded.pictures.clone();
-    let times = loaded.radii.clone();
+    let times = answers_of(&loaded);
     let resumed = run(&settings, Some(loaded));
-    assert!(resumed.radii == times, "what was there is not run again");
+    assert!(answers_of(&resumed)[..times.len()] == times[..], "what was there is not run again");
     assert!(rows.iter().all(|row| resumed.pictures.contains(row)));
     let again = run(&settings, None);
     let of_first = errors(&first, folder.path());
@@ -217,9 +224,19 @@ fn the_command_writes_a_page_a_table_and_everything() {
     }
 
     // All of it is there already.
-    study(&["--quick", "--resume", "--json"]).assert().success().stdout(contains("\"settings\""));
+    study(&["--quick", "--resume", "--json"])
+        .assert()
+        .success()
+        .stdout(contains("\"settings\"").and(contains("\"summary\"")));
     study(&["--resume"]).assert().code(2).stderr(contains("other settings").and(contains("help:")));
     study(&["--resume", "-o", "nowhere"]).assert().code(2).stderr(contains("can't be read"));
+    // An unfinished one goes first, and is gone when it is finished.
+    let partial = folder.path().join("study/study.partial.json");
+    std::fs::write(&partial, "{").unwrap();
+    study(&["--quick", "--resume"]).assert().code(2).stderr(contains("study.partial.json"));
+    std::fs::copy(folder.path().join("study/study.json"), &partial).unwrap();
+    study(&["--quick", "--resume"]).assert().success();
+    assert!(!partial.exists());
     std::fs::write(folder.path().join("study/study.json"), "{").unwrap();
     study(&["--quick", "--resume"]).assert().code(2).stderr(contains("is not the file of a study"));
     study(&["--quick", "--full"]).assert().code(2).stderr(contains("cannot be used with"));

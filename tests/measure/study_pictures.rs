@@ -105,14 +105,16 @@ fn equal_photons_by_hand() {
 /// Both errors fall as one over the time; the fixed radius takes twice as long for the same error.
 #[test]
 fn equal_time_by_hand() {
-    let mut all = rows(1000, &[(n(400), [8.0, 16.0], 1.0), (fixed(2), [8.0, 16.0], 2.0)]);
+    // For either number of photons, radius 2 is the best; in the same time, radius 1 with more photons is.
+    let mut all =
+        rows(1000, &[(n(400), [8.0, 16.0], 1.0), (fixed(1), [8.0, 16.0], 2.0), (fixed(2), [6.0, 12.0], 3.0)]);
     all.extend(rows(
         4000,
         &[
             (n(100), [9.0, 9.0], 1.5),
             (n(400), [2.0, 4.0], 4.0),
             (fixed(1), [2.0, 4.0], 8.0),
-            (fixed(2), [9.0, 9.0], 9.0),
+            (fixed(2), [1.5, 3.0], 12.0),
         ],
     ));
     let compared = equal_time(&all);
@@ -124,8 +126,8 @@ fn equal_time_by_hand() {
         curve.iter().map(|point| (point.photons, point.width, point.seconds)).collect::<Vec<_>>()
     };
     assert_eq!(places(false), [(1000, n(400), 1.0), (4000, n(400), 4.0)]);
-    assert_eq!(places(true), [(1000, fixed(2), 2.0), (4000, fixed(1), 8.0)]);
-    // From 2 s, where the fixed curve begins, to 4 s, where the other ends.
+    assert_eq!(places(true), [(1000, fixed(2), 3.0), (4000, fixed(2), 12.0)]);
+    // From 2 s, where fixed radii begin, to 4 s, where the other ends.
     let seconds: Vec<f64> = rmse.budgets.iter().map(|budget| budget.seconds).collect();
     assert_eq!(seconds.len(), 5);
     assert!(
@@ -134,7 +136,8 @@ fn equal_time_by_hand() {
     for budget in &rmse.budgets {
         // The geometric mean of the seeds' 8 / t and 16 / t.
         let variable = 8.0 * 2.0_f64.sqrt() / budget.seconds;
-        assert!(close(budget.variable, variable) && close(budget.fixed, 2.0 * variable), "{budget:?}");
+        assert!(budget.variable.0 == n(400) && close(budget.variable.1, variable), "{budget:?}");
+        assert!(budget.fixed.0 == fixed(1) && close(budget.fixed.1, 2.0 * variable), "{budget:?}");
         assert!(close(budget.ratio.ratio, 0.5), "{budget:?}");
     }
     // Curves that share no time.

@@ -17,6 +17,9 @@ use crate::measure::rivals::{Cores, Scanline};
 use crate::reference::{Inside, Table};
 use crate::settings::{Search, Settings};
 
+/// The share of the truth's root mean square below which an error counts as if the pixel were that dense.
+const DARK: f64 = 0.1;
+
 /// What is estimated, and how often.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct DensityStudy {
@@ -41,9 +44,9 @@ impl DensityStudy {
         Self {
             side: 128,
             photons_per_pixel: 2.0,
-            min_photons: vec![5, 10, 25, 50, 100, 200, 400, 800],
+            min_photons: vec![5, 10, 25, 50, 100, 200, 400, 800, 1600, 3200],
             max_radius: 32,
-            fixed: vec![1, 2, 3, 4, 6, 8, 12, 16],
+            fixed: vec![1, 2, 3, 4, 6, 8, 12, 16, 20],
             seeds: 48,
         }
     }
@@ -63,6 +66,14 @@ pub enum Width {
     Holding(u32),
     /// The same everywhere, in pixels.
     Fixed(u32),
+}
+
+impl Width {
+    /// Whether it waits for photons.
+    #[must_use]
+    pub fn is_growing(self) -> bool {
+        matches!(self, Self::Holding(_))
+    }
 }
 
 /// One estimate of one shape. All errors are in parts of the map's mean density.
@@ -86,8 +97,11 @@ pub struct DensityRow {
     pub noise: f64,
     /// Root of the mean squared error, with its interval over seeds.
     pub rmse: Confidence,
-    /// The same with each pixel's error in parts of its own truth: dim pixels count as much as bright ones.
+    /// The same with each pixel's squared error over its squared truth plus ε, the square of a tenth of the truth's root mean
+    /// square: dim pixels count as much as bright ones.
     pub relative_rmse: Confidence,
+    /// The two errors of each seed, in their order, to be paired with those of another estimate.
+    pub of_seeds: Vec<[f64; 2]>,
 }
 
 /// Every estimate of every shape, the same bits whatever the number of threads. `observe` gets the part that is done.
@@ -177,17 +191,19 @@ fn row(
     let Errors { means, rmses, relative_rmses, bias, noise } = Errors::of(&maps, truth.values());
     let unit = study.photons_per_pixel;
     let confidence = |values: Vec<f64>| Confidence::of(&values).expect("at least two seeds");
-    let in_unit = |values: &[f64]| confidence(values.iter().map(|value| value / unit).collect());
+    let in_unit = |values: &[f64]| values.iter().map(|value| value / unit).collect::<Vec<f64>>();
+    let rmses = in_unit(&rmses);
     DensityRow {
         shape,
         width,
         corrected,
         seeds: study.seeds,
         mean_radius: mean(found.iter().map(|boxes| boxes.mean_radius)),
-        mean_error: in_unit(&means),
+        mean_error: confidence(in_unit(&means)),
         bias: bias / unit,
         noise: noise / unit,
-        rmse: in_unit(&rmses),
+        of_seeds: rmses.iter().zip(&relative_rmses).map(|(&rmse, &relative)| [rmse, relative]).collect(),
+        rmse: confidence(rmses),
         relative_rmse: confidence(relative_rmses),
     }
 }
@@ -222,8 +238,10 @@ impl Errors {
         }
         #[expect(clippy::cast_precision_loss, reason = "far fewer than 2^53 pixels")]
         let pixels = truth.len() as f64;
-        let relative =
-            |map: &Vec<f64>| mean(map.iter().zip(truth).map(|(error, truth)| (error / truth).powi(2))).sqrt();
+        let epsilon = DARK * DARK * mean(truth.iter().map(|truth| truth * truth));
+        let relative = |map: &Vec<f64>| {
+            mean(map.iter().zip(truth).map(|(error, truth)| error * error / (truth * truth + epsilon))).sqrt()
+        };
         Self {
             means: errors.iter().map(|map| mean(map.iter().copied())).collect(),
             rmses: errors.iter().map(|map| mean(map.iter().map(|error| error * error)).sqrt()).collect(),
@@ -255,9 +273,12 @@ mod tests {
         let errors = Errors::of(&[vec![11.0, 4.0], vec![13.0, 4.0]], &truth);
         assert_eq!(errors.means, [0.0, 1.0]);
         assert_eq!(errors.rmses, [1.0, 5.0_f64.sqrt()]);
-        // (0.1² + 0.2²) / 2 and (0.3² + 0.2²) / 2.
-        assert!((errors.relative_rmses[0] - 0.025_f64.sqrt()).abs() < 1e-15);
-        assert!((errors.relative_rmses[1] - 0.065_f64.sqrt()).abs() < 1e-15);
+        // The mean of 100 and 25 is 62.5, of which ε is a hundredth.
+        let relative = |[first, second]: [f64; 2]| {
+            f64::midpoint(first * first / 100.625, second * second / 25.625).sqrt()
+        };
+        assert!((errors.relative_rmses[0] - relative([1.0, 1.0])).abs() < 1e-15);
+        assert!((errors.relative_rmses[1] - relative([3.0, 1.0])).abs() < 1e-15);
         // (2² - 2 / 2 + 1) / 2 and (2 + 0) / 2.
         assert_eq!((errors.bias, errors.noise), (2.0_f64.sqrt(), 1.0));
     }

@@ -5,10 +5,10 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use super::Study;
 use super::density::{DensityRow, Width};
 use super::pictures::{PictureRow, PictureStudy};
 use super::radii::RadiusRow;
+use super::{Study, Summary};
 use crate::error::{Error, Result};
 use crate::image::write_atomically;
 use crate::measure::PictureError;
@@ -155,6 +155,14 @@ impl<'a> Record<'a> {
     }
 }
 
+/// All of a study and what it says; reading takes the rows alone.
+#[derive(Serialize)]
+struct WithSummary<'a> {
+    #[serde(flatten)]
+    study: &'a Study,
+    summary: Summary,
+}
+
 impl Study {
     /// Reads what [`save`](Self::save) wrote.
     ///
@@ -173,8 +181,9 @@ impl Study {
     /// # Errors
     /// [`Error::File`] if it was made on another device, by another version or with other settings.
     pub fn check_resumable(&self, path: &Path, now: &Self) -> Result<()> {
-        let other = if self.program != now.program {
-            format!("version {} and this is {}", self.program, now.program)
+        let other = if (&self.program, &self.commit) != (&now.program, &now.commit) {
+            let of = |study: &Self| format!("version {}, commit {}", study.program, study.commit);
+            format!("{} and this is {}", of(self), of(now))
         } else if self.device != now.device {
             format!("{} and this is {}", self.device.renderer, now.device.renderer)
         } else if self.settings != now.settings {
@@ -186,15 +195,21 @@ impl Study {
         Err(Error::file(path, format!("was made with {other}"), remedy))
     }
 
-    /// Writes JSON, the old file kept until the new one is whole.
+    /// Writes JSON, the old file kept until the new one is whole: every row, and `summary`, what they say.
     ///
     /// # Errors
     /// As [`write_atomically`].
     pub fn save(&self, path: &Path) -> Result<()> {
         write_atomically(path, |file| {
-            serde_json::to_writer(&mut *file, self)?;
+            serde_json::to_writer(&mut *file, &self.with_summary())?;
             file.write_all(b"\n")
         })
+    }
+
+    /// What [`save`](Self::save) writes.
+    #[must_use]
+    pub fn with_summary(&self) -> impl Serialize {
+        WithSummary { study: self, summary: self.summary() }
     }
 
     /// Writes a row of CSV for each thing that was measured.

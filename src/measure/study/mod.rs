@@ -29,7 +29,8 @@ use std::time::Instant;
 use serde::{Deserialize, Serialize};
 
 use self::density::{DensityRow, DensityStudy};
-use self::pictures::{PictureRow, PictureStudy, SceneReference};
+use self::pareto::Overall;
+use self::pictures::{EqualPhotons, EqualTime, PictureRow, PictureStudy, SceneReference};
 use self::radii::{Answers, Question, RadiusStudy};
 use crate::error::Result;
 use crate::gl::{Gl, ShaderSource};
@@ -73,6 +74,8 @@ impl StudySettings {
 pub struct Study {
     /// The version of the program.
     pub program: String,
+    /// The commit that it was built from.
+    pub commit: String,
     /// Where it ran.
     pub device: Device,
     /// What was asked.
@@ -95,6 +98,7 @@ impl Study {
     pub fn begin(gl: &Gl, settings: &StudySettings) -> Self {
         Self {
             program: env!("CARGO_PKG_VERSION").to_owned(),
+            commit: env!("VARIKERNEL_COMMIT").to_owned(),
             device: Device::of(gl.info()),
             settings: settings.clone(),
             radii: Vec::new(),
@@ -105,15 +109,41 @@ impl Study {
         }
     }
 
-    /// What the numbers say beside the front of radius maps, in sentences.
+    /// What the rows say: the front of each question, comparisons, and sentences.
     #[must_use]
-    pub fn words(&self) -> Vec<String> {
-        let mut words = words::stopping_rule(&self.density);
-        words.extend(words::density(&self.density));
-        let (photons, time) = (pictures::equal_photons(&self.pictures), pictures::equal_time(&self.pictures));
-        words.extend(words::pictures(&photons, &time));
-        words
+    pub fn summary(&self) -> Summary {
+        let of_question = |(question, answers): &(Question, Answers)| {
+            (*question, pareto::overall(&answers.rows, *question))
+        };
+        let radii: Vec<_> = self.radii.iter().map(of_question).collect();
+        let equal_photons = pictures::equal_photons(&self.pictures);
+        let equal_time = pictures::equal_time(&self.pictures);
+        Summary {
+            advice: radii.first().map(|(_, overall)| pareto::advice(overall)).unwrap_or_default(),
+            density: [words::stopping_rule(&self.density), words::density(&self.density)].concat(),
+            pictures: words::pictures(&equal_photons, &equal_time),
+            radii,
+            equal_photons,
+            equal_time,
+        }
     }
+}
+
+/// What the rows of a study say.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Summary {
+    /// What to choose for which budget, for the first question.
+    pub advice: Vec<String>,
+    /// What was found of estimates of density.
+    pub density: Vec<String>,
+    /// What was found of pictures.
+    pub pictures: Vec<String>,
+    /// Each question's ways over all of its maps, and which are on the front.
+    pub radii: Vec<(Question, Vec<Overall>)>,
+    /// Variable against fixed radii from the same photons.
+    pub equal_photons: Vec<EqualPhotons>,
+    /// The same in the same time.
+    pub equal_time: Vec<EqualTime>,
 }
 
 /// Where a study is.
@@ -146,19 +176,23 @@ pub fn run(
     let before = study.seconds;
     let questions = &settings.radii.questions;
     for (index, &question) in questions.iter().enumerate() {
-        if study.radii.iter().any(|(known, _)| *known == question) {
-            continue;
-        }
+        let known = study.radii.iter().position(|(known, _)| *known == question);
+        let place = known.unwrap_or_else(|| {
+            study.radii.push((question, Answers::default()));
+            study.radii.len() - 1
+        });
         let maps = RadiusStudy::maps(question, real);
-        let answers = radii::answer(gl, question, &maps, settings.radii.sample_ms, &mut |what, part| {
-            let Question { side, min_photons, max_radius } = question;
-            #[expect(clippy::cast_precision_loss, reason = "a share")]
-            let done = (index as f64 + part) / questions.len() as f64;
-            let what = format!("radii, side {side}, n {min_photons}, MR {max_radius}: {what}");
-            observe(&study, &Progress { what, done: SHARES[0] * done })
-        })?;
-        study.radii.push((question, answers));
-        study.seconds = before + start.elapsed().as_secs_f64();
+        let earlier = study.radii[place].1.clone();
+        let sample_ms = settings.radii.sample_ms;
+        study.radii[place].1 =
+            radii::answer(gl, question, &maps, sample_ms, earlier, &mut |answers, way, part| {
+                study.radii[place].1.clone_from(answers);
+                study.seconds = before + start.elapsed().as_secs_f64();
+                #[expect(clippy::cast_precision_loss, reason = "a share")]
+                let done = (index as f64 + part) / questions.len() as f64;
+                let what = format!("radii of {question}: {way}");
+                observe(&study, &Progress { what, done: SHARES[0] * done })
+            })?;
     }
     if study.density.is_empty() {
         study.density = density::run(&settings.density, &mut |done| {

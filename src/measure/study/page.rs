@@ -3,11 +3,11 @@
 use askama::Template as _;
 
 use super::density::DensityRow;
-use super::pareto::{self, Overall};
-use super::pictures::{Chosen, EqualPhotons, EqualTime, Metric, Width, Winner, equal_photons, equal_time};
-use super::radii::{LeftOut, Question};
+use super::pareto::Overall;
+use super::pictures::{Chosen, EqualPhotons, EqualTime, Metric, Width, Winner};
+use super::radii::LeftOut;
 use super::shape::Shape;
-use super::{Study, plots, words};
+use super::{Study, Summary, plots, words};
 
 /// The page.
 #[derive(askama::Template)]
@@ -21,7 +21,7 @@ struct Page<'a> {
     questions: Vec<QuestionView>,
     trends: Vec<String>,
     left_out: Vec<LeftOutView>,
-    stopping_rule: (Vec<String>, String),
+    stopping_rule: String,
     density_words: Vec<String>,
     density_plots: Vec<String>,
     density_rows: Vec<[String; 8]>,
@@ -65,13 +65,10 @@ impl Study {
 
 impl<'a> Page<'a> {
     fn of(study: &'a Study, command: &'a str) -> Self {
-        let (equal_photons, equal_time) = (equal_photons(&study.pictures), equal_time(&study.pictures));
+        let Summary { advice, density, pictures, radii, equal_photons, equal_time } = study.summary();
         let plotted = |curves: &&EqualTime| matches!(curves.metric, Metric::Rmse | Metric::RelativeMse);
-        let overall: Vec<Vec<Overall>> =
-            study.radii.iter().map(|(question, answers)| pareto::overall(&answers.rows, *question)).collect();
-        let views = study.radii.iter().zip(&overall).enumerate();
-        let questions = views.map(|(index, ((question, _), overall))| QuestionView {
-            title: title(*question),
+        let questions = radii.iter().enumerate().map(|(index, (question, overall))| QuestionView {
+            title: question.to_string(),
             plot: plots::radii(overall, *question),
             rows: overall.iter().map(OverallView::of).collect(),
             open: index == 0,
@@ -80,15 +77,15 @@ impl<'a> Page<'a> {
             study,
             command,
             environment: environment(study),
-            advice: overall.first().map(|overall| pareto::advice(overall)).unwrap_or_default(),
+            advice,
             questions: questions.collect(),
-            trends: plots::by_question(&study.radii, &overall),
+            trends: plots::by_question(&radii),
             left_out: left_out(study),
-            stopping_rule: (words::stopping_rule(&study.density), plots::stopping_rule(&study.density)),
-            density_words: words::density(&study.density),
+            density_words: density,
+            stopping_rule: plots::stopping_rule(&study.density),
             density_plots: Shape::ALL.map(|shape| plots::density(&study.density, shape)).into(),
             density_rows: study.density.iter().map(density_row).collect(),
-            picture_words: words::pictures(&equal_photons, &equal_time),
+            picture_words: pictures,
             picture_plots: equal_time.iter().filter(plotted).map(plots::pictures).collect(),
             picture_rows: equal_photons.iter().map(picture_row).collect(),
         }
@@ -101,7 +98,7 @@ fn left_out(study: &Study) -> Vec<LeftOutView> {
     for LeftOut { map, question, variant, reason } in
         study.radii.iter().flat_map(|(_, answers)| &answers.left_out)
     {
-        let (variant, question) = (variant.to_string(), title(*question));
+        let (variant, question) = (variant.to_string(), question.to_string());
         let same = |view: &&mut LeftOutView| {
             (&view.variant, &view.question, &view.reason) == (&variant, &question, reason)
         };
@@ -131,9 +128,12 @@ fn density_row(row: &DensityRow) -> [String; 8] {
 }
 
 fn picture_row(row: &EqualPhotons) -> [String; 8] {
-    let width = |chosen: &Chosen| match chosen.width {
-        Width::Variable { min_photons } => format!("n = {min_photons}"),
-        Width::Fixed { radius } => format!("radius {radius}"),
+    let width = |chosen: &Chosen| {
+        let end = if chosen.at_end { " (last tried)" } else { "" };
+        match chosen.width {
+            Width::Variable { min_photons } => format!("n = {min_photons}{end}"),
+            Width::Fixed { radius } => format!("radius {radius}{end}"),
+        }
     };
     let default = row.default.map_or_else(String::new, |default| default.ratio.to_string());
     let winner = match row.best.winner {
@@ -167,11 +167,6 @@ impl OverallView {
     }
 }
 
-fn title(question: Question) -> String {
-    let Question { side, min_photons, max_radius } = question;
-    format!("{side} x {side} pixels, n = {min_photons}, MR = {max_radius}")
-}
-
 fn environment(study: &Study) -> Vec<(&'static str, String)> {
     let device = &study.device;
     vec![
@@ -179,7 +174,7 @@ fn environment(study: &Study) -> Vec<(&'static str, String)> {
         ("driver", device.version.clone()),
         ("kind", if device.software { "software renderer" } else { "hardware" }.to_owned()),
         ("processor", format!("{}, {} threads", device.processor, device.threads)),
-        ("program", format!("varikernel {}, commit {}", study.program, env!("VARIKERNEL_COMMIT"))),
+        ("program", format!("varikernel {}, commit {}", study.program, study.commit)),
         ("time", format!("{:.0} s", study.seconds)),
     ]
 }

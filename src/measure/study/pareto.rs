@@ -3,11 +3,13 @@
 use std::cmp::Ordering;
 use std::fmt::Write as _;
 
+use serde::Serialize;
+
 use super::radii::{Question, RadiusRow};
 use super::variant::VariantName;
 
 /// A way on all maps of a question together.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Overall {
     /// The way.
     pub variant: VariantName,

@@ -3,7 +3,7 @@
 use super::density::{DensityRow, Width};
 use super::pareto::Overall;
 use super::pictures::{CurvePoint, EqualTime};
-use super::radii::{Answers, Question};
+use super::radii::Question;
 use super::shape::Shape;
 use crate::measure::chart::{Axis, COLOURS, Chart, Point, Scale, Series, Style};
 
@@ -23,7 +23,6 @@ fn axis(name: &str, scale: Scale) -> Axis {
 
 /// Run time against error, the front labelled.
 pub(super) fn radii(overall: &[Overall], question: Question) -> String {
-    let Question { side, min_photons, max_radius } = question;
     let mut series = Vec::new();
     let mut left: Vec<&Overall> = overall.iter().collect();
     for ((prefix, name), colour) in FAMILIES.into_iter().zip(COLOURS) {
@@ -45,7 +44,7 @@ pub(super) fn radii(overall: &[Overall], question: Question) -> String {
         }
     }
     Chart {
-        title: format!("{side} x {side} pixels, n = {min_photons}, MR = {max_radius}"),
+        title: question.to_string(),
         x: axis("time of a frame (copies)", Scale::Logarithmic),
         y: axis("mean error of the radius (pixels)", Scale::Logarithmic),
         series,
@@ -67,8 +66,8 @@ const FOLLOWED: [(&str, &str); 6] = [
 type Vary = fn(&mut Question) -> &mut u32;
 
 /// How times grow with n, MR and side, one varied at a time around the first question.
-pub(super) fn by_question(answers: &[(Question, Answers)], overall: &[Vec<Overall>]) -> Vec<String> {
-    let Some((middle, _)) = answers.first() else { return Vec::new() };
+pub(super) fn by_question(overall: &[(Question, Vec<Overall>)]) -> Vec<String> {
+    let Some((middle, _)) = overall.first() else { return Vec::new() };
     let kinds: [(&str, &str, Vary); 3] = [
         ("Time by n", "n (photons)", |question| &mut question.min_photons),
         ("Time by MR", "MR (pixels)", |question| &mut question.max_radius),
@@ -77,7 +76,7 @@ pub(super) fn by_question(answers: &[(Question, Answers)], overall: &[Vec<Overal
     let plot = |(title, x, vary): (&str, &str, Vary)| {
         let line = |((name, shown), colour)| {
             let mut points: Vec<Point> = Vec::new();
-            for ((question, _), overall) in answers.iter().zip(overall) {
+            for (question, overall) in overall {
                 let (mut question, mut same) = (*question, *middle);
                 let value = *vary(&mut question);
                 *vary(&mut same) = value;

@@ -23,8 +23,6 @@ use crate::synth::Kind;
 const KINDS: [Kind; 4] = [Kind::Uniform, Kind::Caustic, Kind::Step, Kind::Spike];
 /// The seed of all maps.
 const SEED: u64 = 1;
-/// A first run that takes longer than this is the only sample.
-const LONG: Duration = Duration::from_millis(400);
 
 /// What is asked, on maps of which side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -35,6 +33,13 @@ pub struct Question {
     pub min_photons: u32,
     /// MR.
     pub max_radius: u32,
+}
+
+impl std::fmt::Display for Question {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { side, min_photons, max_radius } = self;
+        write!(formatter, "{side} x {side} pixels, n = {min_photons}, MR = {max_radius}")
+    }
 }
 
 impl Question {
@@ -185,7 +190,8 @@ pub struct Answers {
     pub left_out: Vec<LeftOut>,
 }
 
-/// Runs every way on every map of a question. `observe` gets the way that is next, and the part that is done.
+/// Runs every way on every map of a question that `earlier` does not have. `observe` gets what is there so far, the way that
+/// is next, and the part that is done.
 ///
 /// # Errors
 /// [`Error::Gl`] if the driver fails while it is timed, and whatever `observe` fails with. A way that can't be set up is left
@@ -195,43 +201,62 @@ pub fn answer(
     question: Question,
     maps: &[MapSource],
     sample_ms: u64,
-    observe: &mut dyn FnMut(&str, f64) -> Result<()>,
+    earlier: Answers,
+    observe: &mut dyn FnMut(&Answers, &str, f64) -> Result<()>,
 ) -> Result<Answers> {
     let search = question.search();
+    let mut answers = earlier;
+    let variants = variant::all(search);
+    let missing: Vec<&Variant> =
+        variants.iter().filter(|variant| answers.of(&variant.name) < maps.len()).collect();
+    if missing.is_empty() {
+        return Ok(answers);
+    }
     let mut benches = Vec::new();
     for map in maps {
         benches.push(Bench::new(gl, map, search)?);
     }
-    let variants = variant::all(search);
-    let mut answers = Answers::default();
-    for (done, variant) in variants.iter().enumerate() {
+    let first = answers.rows.len();
+    for (done, variant) in missing.iter().enumerate() {
         #[expect(clippy::cast_precision_loss, reason = "a share")]
-        observe(&variant.name.to_string(), done as f64 / variants.len() as f64)?;
-        // Compiled once for all maps.
+        observe(&answers, &variant.name.to_string(), done as f64 / missing.len() as f64)?;
         let mut machine = None;
         for bench in &mut benches {
             bench.take_copy()?;
-            let row = Machine::prepared(&mut machine, gl, &bench.density, variant)
-                .and_then(|machine| bench.run(machine, question, &variant.name, sample_ms));
-            match row {
-                Ok(row) => answers.rows.push(row),
-                Err(error @ Error::Gl { .. }) => return Err(error),
-                Err(error) => answers.left_out.push(LeftOut {
-                    map: bench.map.name.clone(),
-                    question,
-                    variant: variant.name.clone(),
-                    reason: error.to_string().lines().next().unwrap_or_default().to_owned(),
-                }),
+            match Machine::prepared(&mut machine, gl, &bench.density, variant) {
+                Ok(machine) => match bench.run(machine, question, &variant.name, sample_ms) {
+                    Ok(row) => answers.rows.push(row),
+                    Err(error @ Error::Gl { .. }) => return Err(error),
+                    Err(error) => answers.leave_out(bench, question, variant, &error),
+                },
+                Err(error) => answers.leave_out(bench, question, variant, &error),
             }
         }
     }
+    // By all copies that were taken, not only those before a row.
     for bench in &benches {
-        let copy_ms = Statistics::of(&bench.copies_ms).map_or(f64::NAN, |statistics| statistics.median_ms);
-        for row in answers.rows.iter_mut().filter(|row| row.map == bench.map) {
-            row.copies = row.ms / copy_ms;
+        for row in answers.rows[first..].iter_mut().filter(|row| row.map == bench.map) {
+            row.copies = row.ms / bench.copy_ms();
         }
     }
     Ok(answers)
+}
+
+impl Answers {
+    /// Maps for which a way has a row, or a reason for none.
+    fn of(&self, variant: &VariantName) -> usize {
+        self.rows.iter().filter(|row| row.variant == *variant).count()
+            + self.left_out.iter().filter(|left_out| left_out.variant == *variant).count()
+    }
+
+    fn leave_out(&mut self, bench: &Bench, question: Question, variant: &Variant, error: &Error) {
+        self.left_out.push(LeftOut {
+            map: bench.map.name.clone(),
+            question,
+            variant: variant.name.clone(),
+            reason: error.to_string().lines().next().unwrap_or_default().to_owned(),
+        });
+    }
 }
 
 /// A map on the device with its exact answer, and the unit of time.
@@ -277,6 +302,11 @@ impl Bench {
         Ok(())
     }
 
+    /// Median time of a copy so far.
+    fn copy_ms(&self) -> f64 {
+        Statistics::of(&self.copies_ms).map_or(f64::NAN, |statistics| statistics.median_ms)
+    }
+
     fn run(
         &mut self,
         machine: &mut Machine,
@@ -286,17 +316,15 @@ impl Bench {
     ) -> Result<RadiusRow> {
         let density = if machine.unguarded { &self.claimed } else { &self.density };
         let limit = Duration::from_millis(sample_ms);
-        // The first run compiles; where it takes long all the same, that does not matter.
-        let ((), first) = self.timer.time(|| machine.render(density))?;
-        let mut samples = vec![first];
-        if first.wall < LONG {
-            samples.clear();
-            let begun = Instant::now();
-            while samples.is_empty() || begun.elapsed() < limit {
-                samples.push(self.timer.time(|| machine.render(density))?.1);
-            }
+        // The first run compiles.
+        machine.render(density)?;
+        let begun = Instant::now();
+        let mut samples = Vec::new();
+        while samples.is_empty() || begun.elapsed() < limit {
+            samples.push(self.timer.time(|| machine.render(density))?.1);
         }
         let ms: Vec<f64> = samples.iter().map(|sample| 1000.0 * sample.query.as_secs_f64()).collect();
+        let ms = Statistics::of(&ms).map_or(f64::NAN, |statistics| statistics.median_ms);
         Ok(RadiusRow {
             map: self.map.clone(),
             photons: self.photons,
@@ -306,8 +334,8 @@ impl Bench {
             mean_radius: self.mean_radius,
             error: RadiusError::between(&machine.read()?, &self.exact),
             memory_bytes: machine.memory_bytes,
-            ms: Statistics::of(&ms).map_or(f64::NAN, |statistics| statistics.median_ms),
-            copies: f64::NAN,
+            ms,
+            copies: ms / self.copy_ms(),
             samples: samples.len(),
         })
     }

@@ -3,41 +3,45 @@
 use super::density::{DensityRow, Width};
 use super::pictures::{EqualPhotons, EqualTime, Metric, Winner};
 use super::shape::Shape;
-use crate::measure::Confidence;
+use crate::measure::{Confidence, RatioInterval};
 use crate::settings::PictureSettings;
 
-/// A measure and its name.
-type Measure = (&'static str, fn(&DensityRow) -> Confidence);
+/// A measure, its name, and its place among the errors of a seed.
+type Measure = (&'static str, fn(&DensityRow) -> Confidence, usize);
 /// The measures by which estimates are compared.
-const MEASURES: [Measure; 2] = [("RMSE", |row| row.rmse), ("relative RMSE", |row| row.relative_rmse)];
+const MEASURES: [Measure; 2] = [("RMSE", |row| row.rmse, 0), ("relative RMSE", |row| row.relative_rmse, 1)];
 
 /// For each shape: which n and which fixed radius are best, and which of both, by both measures.
 pub(super) fn density(rows: &[DensityRow]) -> Vec<String> {
     let mut words = Vec::new();
     for shape in Shape::ALL {
-        for (name, measure) in MEASURES {
+        for (name, measure, place) in MEASURES {
             let best = |growing: bool| {
-                rows.iter()
-                    .filter(|row| row.shape == shape && matches!(row.width, Width::Holding(_)) == growing)
-                    .min_by(|a, b| measure(a).mean.total_cmp(&measure(b).mean))
+                let mut of_kind =
+                    rows.iter().filter(|row| row.shape == shape && row.width.is_growing() == growing);
+                let best = of_kind.clone().min_by(|a, b| measure(a).mean.total_cmp(&measure(b).mean))?;
+                let widest = of_kind.next_back()?.width;
+                Some((best, best.width == widest))
             };
-            let (Some(variable), Some(fixed)) = (best(true), best(false)) else { continue };
-            let (of_variable, of_fixed) = (measure(variable), measure(fixed));
-            let verdict =
-                if (of_variable.mean - of_fixed.mean).abs() <= of_variable.margin() + of_fixed.margin() {
-                    "level"
-                } else if of_variable.mean < of_fixed.mean {
-                    "variable wins"
-                } else {
-                    "fixed wins"
-                };
+            let (Some((variable, _)), Some((fixed, _))) = (best(true), best(false)) else { continue };
+            let pairs: Vec<(f64, f64)> =
+                variable.of_seeds.iter().zip(&fixed.of_seeds).map(|(a, b)| (a[place], b[place])).collect();
+            let Some(ratio) = RatioInterval::of(&pairs) else { continue };
+            let verdict = match Winner::by(&ratio) {
+                Winner::Variable => "variable wins",
+                Winner::Fixed => "fixed wins",
+                Winner::Undecided => "level",
+            };
+            let told = |growing, row: &DensityRow| {
+                let end =
+                    if best(growing).is_some_and(|(_, at_end)| at_end) { ", the widest tried" } else { "" };
+                format!("{} ({}{end})", measure(row), width(row))
+            };
             words.push(format!(
-                "{}, {name}: {} of the best variable estimate ({}), {} of the best fixed one ({}): {verdict}.",
+                "{}, {name}: {} of the best variable estimate, {} of the best fixed one: {verdict}.",
                 shape.name(),
-                of_variable,
-                width(variable),
-                of_fixed,
-                width(fixed),
+                told(true, variable),
+                told(false, fixed),
             ));
         }
     }
@@ -94,10 +98,10 @@ pub(super) fn pictures(equal_photons: &[EqualPhotons], equal_time: &[EqualTime])
         let best = count(of_metric().map(|one| one.best.winner));
         let default = count(of_metric().filter_map(|one| Some(one.default?.winner)));
         let of_time = equal_time.iter().filter(|one| one.metric == metric);
-        let budgets = count(of_time.flat_map(|one| &one.budgets).map(|budget| budget.winner));
+        let budgets = count(of_time.filter_map(|one| Some(one.budgets.last()?.winner)));
         words.push(format!(
             "Pictures, {}: for equal photons, variable radii beat the best fixed one {} with the best n and {} with n = {n}; \
-             in equal time, {}.",
+             in the longest time that both reach, {}.",
             metric.name(),
             best,
             default,
@@ -149,6 +153,7 @@ mod tests {
             noise: rmse,
             rmse: around(rmse, 0.01),
             relative_rmse: around(2.0 * rmse, 0.3),
+            of_seeds: vec![[rmse - 0.001, 2.0 * rmse - 0.3], [rmse + 0.001, 2.0 * rmse + 0.3]],
         }
     }
 
@@ -159,23 +164,24 @@ mod tests {
             row(Width::Holding(10), true, 0.2, -0.001),
             row(Width::Fixed(2), false, 0.4, 0.0),
             row(Width::Fixed(3), false, 0.1, 0.0),
+            row(Width::Fixed(4), false, 0.9, 0.0),
         ];
         assert_eq!(
             density(&rows),
             [
-                "uniform, RMSE: 0.2000 ± 0.0100 of the best variable estimate (n = 10, c - 1), 0.1000 ± 0.0100 of the best \
-                 fixed one (radius 3): fixed wins.",
-                "uniform, relative RMSE: 0.4000 ± 0.3000 of the best variable estimate (n = 10, c - 1), 0.2000 ± 0.3000 of \
-                 the best fixed one (radius 3): level."
+                "uniform, RMSE: 0.2000 ± 0.0100 (n = 10, c - 1, the widest tried) of the best variable estimate, \
+                 0.1000 ± 0.0100 (radius 3) of the best fixed one: fixed wins.",
+                "uniform, relative RMSE: 0.4000 ± 0.3000 (n = 10, c - 1, the widest tried) of the best variable estimate, \
+                 0.2000 ± 0.3000 (radius 3) of the best fixed one: level."
             ]
         );
         assert_eq!(
             stopping_rule(&rows),
             ["n = 10: the count c puts +2.00 % into a uniform density, c - 1 puts -0.10 %."]
         );
-        rows[3].rmse.mean = 0.19;
+        rows[3] = row(Width::Fixed(3), false, 0.2, 0.0);
         assert!(density(&rows)[0].ends_with("level."));
-        rows[3].rmse.mean = 0.5;
+        rows[3] = row(Width::Fixed(3), false, 0.5, 0.0);
         assert!(density(&rows)[0].ends_with("variable wins."));
         assert_eq!(density(&[]), [""; 0]);
     }

@@ -31,10 +31,10 @@ pub struct CurvePoint {
 pub struct Budget {
     /// Seconds of a picture.
     pub seconds: f64,
-    /// Error of variable radii, a geometric mean over the seeds.
-    pub variable: f64,
-    /// Error of the fixed radius, the same.
-    pub fixed: f64,
+    /// The n with the least error at that time, and the error: a geometric mean over the seeds.
+    pub variable: (Width, f64),
+    /// The fixed radius, the same.
+    pub fixed: (Width, f64),
     /// Variable error over fixed error, paired by seed.
     pub ratio: RatioInterval,
     /// Who is better.
@@ -54,8 +54,9 @@ pub struct EqualTime {
     pub variable: Vec<CurvePoint>,
     /// The best fixed radius for each number of photons, by increasing time.
     pub fixed: Vec<CurvePoint>,
-    /// Times that both curves reach, errors interpolated by their logarithm over that of the time; none where the curves share no
-    /// time.
+    /// Times that both reach. Each width has a curve of its own over its numbers of photons, errors interpolated by their
+    /// logarithm over that of the time, and the lowest at that time counts: a narrow kernel with more photons may beat what is
+    /// best for either number. None where both share no time.
     pub budgets: Vec<Budget>,
 }
 
@@ -69,64 +70,104 @@ pub fn equal_time(rows: &[PictureRow]) -> Vec<EqualTime> {
             rows.iter().filter(|row| (row.scene.as_str(), row.kernel) == (scene, kernel)).collect();
         for metric in Metric::ALL {
             let [variable, fixed] = [false, true].map(|is_fixed| curve(&of_scene, metric, is_fixed));
-            let budgets = budgets(&variable, &fixed);
+            let [variables, fixeds] = [false, true].map(|is_fixed| curves(&of_scene, metric, is_fixed));
+            let budgets = budgets(&variables, &fixeds);
             found.push(EqualTime { scene: scene.to_owned(), kernel, metric, variable, fixed, budgets });
         }
     }
     found
 }
 
+/// The best width of each number of photons.
 fn curve(rows: &[&PictureRow], metric: Metric, is_fixed: bool) -> Vec<CurvePoint> {
+    along_photons(rows, |sweep, photons| {
+        let chosen = sweep.best(metric, is_fixed)?;
+        point(sweep, metric, photons, chosen.width)
+    })
+}
+
+/// Each width over its numbers of photons.
+fn curves(rows: &[&PictureRow], metric: Metric, is_fixed: bool) -> Vec<Vec<CurvePoint>> {
+    let mut widths: Vec<Width> =
+        rows.iter().map(|row| row.width).filter(|width| width.is_fixed() == is_fixed).collect();
+    widths.sort_unstable();
+    widths.dedup();
+    let of_width = |width| along_photons(rows, |sweep, photons| point(sweep, metric, photons, width));
+    widths.into_iter().map(of_width).collect()
+}
+
+/// A point for each number of photons, by increasing time.
+fn along_photons(
+    rows: &[&PictureRow],
+    point: impl Fn(&Sweep<'_>, u32) -> Option<CurvePoint>,
+) -> Vec<CurvePoint> {
     let mut counts: Vec<u32> = rows.iter().map(|row| row.photons).collect();
     counts.sort_unstable();
     counts.dedup();
-    let point = |photons| {
-        let sweep = Sweep::new(rows.iter().copied().filter(|row| row.photons == photons));
-        let chosen = sweep.best(metric, is_fixed)?;
-        let seconds: Vec<f64> = sweep.of(chosen.width).iter().map(|row| row.seconds()).collect();
-        Some(CurvePoint {
-            photons,
-            width: chosen.width,
-            seconds: Confidence::of(&seconds)?.mean,
-            error: chosen.error,
-            seeds: sweep.errors(chosen.width, metric),
-        })
-    };
-    let mut curve: Vec<CurvePoint> = counts.into_iter().filter_map(point).collect();
+    let of = |photons| point(&Sweep::new(rows.iter().copied().filter(|row| row.photons == photons)), photons);
+    let mut curve: Vec<CurvePoint> = counts.into_iter().filter_map(of).collect();
     curve.sort_by(|a, b| a.seconds.total_cmp(&b.seconds));
     curve
 }
 
-fn budgets(variable: &[CurvePoint], fixed: &[CurvePoint]) -> Vec<Budget> {
-    let ends = |curve: &[CurvePoint]| Some((curve.first()?.seconds, curve.last()?.seconds));
-    let (Some(variable_ends), Some(fixed_ends)) = (ends(variable), ends(fixed)) else {
+/// A width of one number of photons, if it was tried.
+fn point(sweep: &Sweep<'_>, metric: Metric, photons: u32, width: Width) -> Option<CurvePoint> {
+    let seconds: Vec<f64> = sweep.of(width).iter().map(|row| row.seconds()).collect();
+    let seeds = sweep.errors(width, metric);
+    Some(CurvePoint {
+        photons,
+        width,
+        seconds: Confidence::of(&seconds)?.mean,
+        error: Confidence::of(&seeds)?,
+        seeds,
+    })
+}
+
+fn budgets(variables: &[Vec<CurvePoint>], fixeds: &[Vec<CurvePoint>]) -> Vec<Budget> {
+    let ends = |curves: &[Vec<CurvePoint>]| {
+        let seconds = || curves.iter().flatten().map(|point| point.seconds);
+        Some((seconds().reduce(f64::min)?, seconds().reduce(f64::max)?))
+    };
+    let (Some(variable_ends), Some(fixed_ends)) = (ends(variables), ends(fixeds)) else {
         return Vec::new();
     };
     let (begin, end) = (variable_ends.0.max(fixed_ends.0), variable_ends.1.min(fixed_ends.1));
     if begin >= end {
         return Vec::new();
     }
-    let seeds = variable.iter().chain(fixed).map(|point| point.seeds.len()).min().unwrap_or(0);
     let budget = |step: u32| {
         let share = f64::from(step) / f64::from(BUDGETS - 1);
         // The last one is the end itself, without a rounded power.
         let seconds = if step + 1 == BUDGETS { end } else { begin * (end / begin).powf(share) };
-        let errors = |curve: &[CurvePoint]| {
-            (0..seeds).map(|seed| error_at(curve, seed, seconds)).collect::<Option<Vec<f64>>>()
-        };
-        let (variable, fixed) = (errors(variable)?, errors(fixed)?);
-        let pairs: Vec<(f64, f64)> = variable.iter().copied().zip(fixed.iter().copied()).collect();
+        let (variable, fixed) = (lowest_at(variables, seconds)?, lowest_at(fixeds, seconds)?);
+        let pairs: Vec<(f64, f64)> = variable.seeds.into_iter().zip(fixed.seeds).collect();
         let ratio = RatioInterval::of(&pairs)?;
-        let winner = Winner::by(&ratio);
         Some(Budget {
             seconds,
-            variable: geometric_mean(&variable)?,
-            fixed: geometric_mean(&fixed)?,
+            variable: (variable.width, variable.error),
+            fixed: (fixed.width, fixed.error),
             ratio,
-            winner,
+            winner: Winner::by(&ratio),
         })
     };
     (0..BUDGETS).filter_map(budget).collect()
+}
+
+/// A width at some time.
+struct AtTime {
+    width: Width,
+    error: f64,
+    seeds: Vec<f64>,
+}
+
+/// The width with the least error at a time; nothing where no curve goes.
+fn lowest_at(curves: &[Vec<CurvePoint>], seconds: f64) -> Option<AtTime> {
+    let at = |curve: &Vec<CurvePoint>| {
+        let count = curve.iter().map(|point| point.seeds.len()).min()?;
+        let seeds: Vec<f64> = (0..count).map(|seed| error_at(curve, seed, seconds)).collect::<Option<_>>()?;
+        Some(AtTime { width: curve[0].width, error: geometric_mean(&seeds)?, seeds })
+    };
+    curves.iter().filter_map(at).min_by(|a, b| a.error.total_cmp(&b.error))
 }
 
 /// A seed's error at a time between two points, on the straight line of the logarithms; nothing outside of the curve.

@@ -81,8 +81,8 @@ pub struct PictureRow {
     /// Seconds of the clock until the photons are traced, uploaded and counted; direct light isn't in it. All pictures of a
     /// seed share it.
     pub seconds_before: f64,
-    /// Seconds from there to the picture: table and search if the radii are variable, then kernels, mirrors and glass, shading,
-    /// and reading back; with setting up what these need.
+    /// Seconds from there to the picture, shaders being there: table and search if the radii are variable, then kernels, mirrors
+    /// and glass, shading, and reading back.
     pub seconds_drawing: f64,
 }
 

@@ -10,9 +10,9 @@ use crate::gl::Gl;
 use crate::image::Image;
 use crate::measure::PictureError;
 use crate::photon::TraceSettings;
-use crate::render::{Layers, Progress, Reference, Renderer};
+use crate::render::{Layers, Progress, Reference};
 use crate::scene::Scene;
-use crate::settings::{MAX_PICTURE_RADIUS, PictureSettings};
+use crate::settings::MAX_PICTURE_RADIUS;
 
 /// Seeds of references begin here, beyond those of pictures.
 const REFERENCE_SEED: u64 = 1 << 32;
@@ -51,7 +51,6 @@ pub fn run(
     study.validate()?;
     let mut run = Run { gl, study, earlier, rows: Vec::new(), done: 0.0 };
     let mut references = Vec::new();
-    warm_up(gl, study)?;
     for name in &study.scenes {
         let scene = Scene::shipped(name)?;
         let (target, reference) = run.reference(name, &scene, observe)?;
@@ -70,20 +69,6 @@ pub fn run(
         equal_time: equal_time(&rows),
         rows,
     })
-}
-
-/// Compiles what pictures need, so that the first is not slower than others.
-fn warm_up(gl: &Gl, study: &PictureStudy) -> Result<()> {
-    let scene = Scene::shipped(&study.scenes[0])?;
-    let settings = |width| study.settings(width, study.kernels[0]);
-    let trace = TraceSettings { photons: 1000, ..TraceSettings::default() };
-    let first = settings(Width::Variable { min_photons: 1 });
-    let mut renderer = Renderer::new(gl, &scene, &first, &trace, &mut |_| ())?;
-    for &kernel in &study.kernels {
-        renderer.picture(&PictureSettings { kernel, ..first })?;
-        renderer.picture(&PictureSettings { kernel, ..settings(Width::Fixed { radius: 1 }) })?;
-    }
-    Ok(())
 }
 
 struct Run<'a> {

@@ -10,7 +10,7 @@ use crate::measure::PictureError;
 use crate::photon::TraceSettings;
 use crate::render::{Layers, Renderer};
 use crate::scene::Scene;
-use crate::settings::{Kernel, PictureSettings};
+use crate::settings::Kernel;
 
 /// The pictures that others are compared with.
 pub(super) struct Compared {
@@ -31,8 +31,6 @@ pub(super) struct Studio<'a> {
     study: &'a PictureStudy,
     renderer: Renderer,
     seconds_before: f64,
-    /// What the renderer has radii for.
-    searched: Option<u32>,
 }
 
 impl<'a> Studio<'a> {
@@ -52,7 +50,7 @@ impl<'a> Studio<'a> {
         })?;
         // A read waits for what was drawn.
         renderer.surfaces().read_normal()?;
-        Ok(Self { study, renderer, seconds_before: begin.elapsed().as_secs_f64(), searched: None })
+        Ok(Self { study, renderer, seconds_before: begin.elapsed().as_secs_f64() })
     }
 
     pub(super) fn row(
@@ -63,15 +61,11 @@ impl<'a> Studio<'a> {
         kernel: Kernel,
     ) -> Result<PictureRow> {
         let settings = self.study.settings(width, kernel);
-        let min_photons = width.min_photons();
-        if let Some(min_photons) = min_photons.filter(|_| min_photons == self.searched) {
-            // The renderer keeps its radii while n stays; each picture is timed with its search.
-            self.renderer.picture(&PictureSettings { min_photons: min_photons + 1, ..settings })?;
-        }
+        // In a running program, shaders are there; variable radii are searched for each picture.
+        self.renderer.warm_up(&settings)?;
         let begin = Instant::now();
         let (layers, account) = self.renderer.picture(&settings)?;
         let seconds_drawing = begin.elapsed().as_secs_f64();
-        self.searched = min_photons.or(self.searched);
         let error = PictureError::of_light_and_sight(
             [&layers.indirect, &place.target.indirect],
             [&layers.beauty, &place.target.beauty],
