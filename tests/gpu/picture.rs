@@ -88,7 +88,13 @@ fn a_renderer_used_again_gives_the_radii_of_a_new_one() {
         let (new, _) = renderer().picture(&settings).unwrap();
         assert_eq!((&again.radius, &again.limited), (&new.radius, &new.limited), "{settings:?}");
         assert_eq!(again.beauty, new.beauty, "{settings:?}");
-        radii.push(again.radius);
+        used.warm_up(&settings).unwrap();
+        let (warm, _) = used.picture(&settings).unwrap();
+        assert_eq!((&warm.radius, warm.beauty), (&new.radius, new.beauty), "{settings:?}");
+        let fixed = PictureSettings { radius: RadiusChoice::Fixed(2), ..settings };
+        let [again, new] = [&mut used, &mut renderer()].map(|of| of.picture(&fixed).unwrap().0.beauty);
+        assert_eq!(again, new, "{fixed:?}");
+        radii.push(warm.radius);
     }
     assert_eq!(radii[0], radii[1], "the kernel is not asked for");
     assert!(radii[1] != radii[2] && radii[2] != radii[3], "n and MR are");
