@@ -15,9 +15,9 @@
 //! The scaled test S T >= n I needs products only where S < n, so they fit 32 bits while T n < 2^32; past that the
 //! shaders multiply in two words (`wide-products`).
 //!
-//! So what is accepted is right (`accepted-is-exact`, `default-is-exact`), all else is refused before it is computed
-//! (`refused-first`), and one photon past the limits of f32, f16 and u16 can give wrong radii (`limits-are-real`). The names
-//! are those of the promises that `varikernel stress` puts to the test, and of its rows.
+//! So what is accepted is right (`accepted-is-exact`, `default-is-exact`), all else is refused by [`plan`], and by a render
+//! in place of its map (`refused-first`), and one photon past the limits of u32, u16, f32 and f16 can give wrong radii
+//! (`limits-are-real`). The names are those of the promises that `varikernel stress` puts to the test, and of its rows.
 
 use glam::UVec2;
 

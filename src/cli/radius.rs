@@ -68,7 +68,7 @@ pub(crate) struct Args {
     sat_samples: Option<SatSamples>,
 
     /// Number in which sums are kept; u16 is for the summed-area table, where no box holds 2^16 photons; f16 (up to 2^11 in
-    /// all) and f32-minus-mean (never proved, so with --allow-inexact only) are for measurements of it.
+    /// all), f32-minus-mean and f32-minus-whole-mean (never proved, so with --allow-inexact only) are for measurements of it.
     #[arg(long, value_enum, default_value_t = Storage::U32)]
     storage: Storage,
 

@@ -1,18 +1,17 @@
 //! `varikernel stress`: where sums break, and whether the promises about them hold.
 
+mod renderers;
 mod table;
 
+use std::fs;
 use std::path::PathBuf;
-use std::process::Command;
 use std::time::{Duration, Instant};
-use std::{env, fs};
 
 use anyhow::{Context as _, Result};
 use indicatif::{ProgressBar, ProgressStyle};
 use varikernel::context::{self, DeviceChoice};
-use varikernel::gl::Gl;
 use varikernel::image::check_writable;
-use varikernel::measure::stress::{self, Bits, Extent, Renderer, Report, StressSettings, Verdict};
+use varikernel::measure::stress::{self, Extent, Report, StressSettings, Verdict};
 
 use super::{Outcome, output};
 
@@ -22,8 +21,8 @@ const TIMES: [u32; 2] = [100, 20];
 /// Put numbers under stress: where sums in each of them break, and whether the promises about exactness hold.
 ///
 /// Every number in which sums can be kept meets maps of growing totals and unkind shapes, the definition beside it; then
-/// blended counts and kernels, the order of the photons, and the same maps on every renderer and number of threads found
-/// here. Writes a folder with stress.csv (a line a row) and stress.json. Exit code 1 if a promise is broken.
+/// blended counts and kernels, and the order of the photons, all on one device; then a few maps on every renderer and number
+/// of threads found here. Writes a folder with stress.csv (a line a row) and stress.json. Exit code 1 if a promise is broken.
 #[derive(Debug, clap::Args)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
 pub(crate) struct Args {
@@ -35,7 +34,8 @@ pub(crate) struct Args {
     #[arg(long, conflicts_with = "full")]
     quick: bool,
 
-    /// Every side, density, shape and number: for hours on a software renderer.
+    /// Every side up to 4096, density, shape and number, and a few maps of 8192 x 8192 where the device has such textures:
+    /// for hours on a software renderer.
     #[arg(long)]
     full: bool,
 
@@ -58,8 +58,7 @@ pub(crate) struct Args {
 
 pub(crate) fn run(args: &Args) -> Result<Outcome> {
     if let Some(times) = args.bits {
-        let gl = context::open(&args.device)?;
-        output::print_json(&Bits::of(&gl, times)?)?;
+        output::print_json(&renderers::found_here(&args.device, times)?)?;
         return Ok(Outcome::Done);
     }
     let folder = &args.output;
@@ -88,7 +87,8 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
         }
         Ok(())
     })?;
-    report.compare_renderers(renderers(&gl, TIMES[usize::from(args.quick)], &bar)?);
+    save(&report)?;
+    report.compare_renderers(renderers::all(&gl, TIMES[usize::from(args.quick)], &bar)?);
     bar.finish_and_clear();
     save(&report)?;
 
@@ -112,66 +112,4 @@ fn progress_bar() -> ProgressBar {
     let style = ProgressStyle::with_template("{wide_bar} {percent} %, {eta} left\n{msg}");
     let bar = ProgressBar::new(1000);
     bar.with_style(style.unwrap_or_else(|error| unreachable!("a fixed template: {error}")))
-}
-
-/// The same maps here, on every other device, on Mesa's other software renderer, and with other numbers of threads.
-fn renderers(gl: &Gl, times: u32, bar: &ProgressBar) -> Result<Vec<Renderer>> {
-    let tell = |name: &str| {
-        bar.inc(10);
-        bar.set_message(format!("the same maps: {name}"));
-    };
-    tell("again");
-    let again = Bits::of(gl, times)?;
-    let mut all = vec![Renderer { name: "again".to_owned(), found: Ok(again), of_threads: true }];
-    let (candidates, missing) = context::candidates();
-    for candidate in candidates {
-        let name = candidate.choice.to_string();
-        tell(&name);
-        all.push(Renderer { found: in_child(&name, None, 1), name, of_threads: false });
-    }
-    for reason in missing {
-        let name = reason.split(':').next().unwrap_or_default().to_owned();
-        all.push(Renderer { name, found: Err(reason), of_threads: false });
-    }
-    tell("softpipe");
-    let softpipe = in_child("softpipe", Some(("GALLIUM_DRIVER", "softpipe")), 1);
-    all.push(Renderer { name: "softpipe".to_owned(), found: softpipe, of_threads: false });
-    for threads in ["1", "2", "8"] {
-        let name = format!("threads-{threads}");
-        tell(&name);
-        let found = in_child("llvmpipe", Some(("LP_NUM_THREADS", threads)), times);
-        all.push(Renderer { name, found, of_threads: true });
-    }
-    Ok(all)
-}
-
-/// What this program finds in a process of its own, since Mesa reads its variables once.
-fn in_child(device: &str, variable: Option<(&str, &str)>, times: u32) -> Result<Bits, String> {
-    let mut child = Command::new(env::current_exe().map_err(|error| error.to_string())?);
-    child.args(["stress", "--bits", &times.to_string(), "--device", device]).envs(variable);
-    let answer = child.output().map_err(|error| error.to_string())?;
-    if !answer.status.success() {
-        let text = String::from_utf8_lossy(&answer.stderr);
-        return Err(format!("not there: {}", reason(&text)));
-    }
-    serde_json::from_slice(&answer.stdout).map_err(|error| format!("no answer: {error}"))
-}
-
-/// The last of what was tried, or the first line.
-fn reason(stderr: &str) -> &str {
-    let mut lines = stderr.lines().map(str::trim);
-    let first = lines.next().unwrap_or_default();
-    lines.take_while(|line| !line.starts_with("help:")).last().unwrap_or(first)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::reason;
-
-    #[test]
-    fn the_reason_is_the_last_thing_that_was_tried() {
-        let text = "error: no usable context; tried:\n  egl:0: is \"llvmpipe\"\n  osmesa: not found\nhelp: install\n";
-        assert_eq!(reason(text), "osmesa: not found");
-        assert_eq!(reason("error: it broke"), "error: it broke");
-    }
 }

@@ -1,7 +1,7 @@
 //! What a stress run found, for people: promises, numbers, renderers.
 
 use anyhow::Result;
-use varikernel::measure::stress::{Judged, Renderer, Report, Row, Verdict};
+use varikernel::measure::stress::{Found, Judged, Renderer, Report, Row, Verdict};
 
 use super::super::output;
 
@@ -106,15 +106,15 @@ fn found(row: &Row) -> String {
 fn renderer(report: &Report, renderer: &Renderer) -> [String; 3] {
     let row = report.rows.iter().find(|row| row.id == format!("bits/{}", renderer.name));
     let text = match (&renderer.found, row) {
-        (Ok(bits), Some(row)) => {
+        (Found::Ran(bits), Some(row)) => {
             let hashes = bits.hashes.iter().filter(|(case, _)| case.starts_with("auto/"));
             let hashes: Vec<_> =
                 hashes.map(|(_, hash)| hash.as_ref().map_or("-", |hash| &hash[..8])).collect();
             let of = row.of.unwrap_or(0);
             format!("{}  {} of {of}; {}", hashes.join(" "), of - row.wrong.unwrap_or(0), row.note)
         }
-        (Err(reason), _) => reason.clone(),
-        (Ok(_), None) => String::new(),
+        (_, Some(row)) => row.note.clone(),
+        (_, None) => String::new(),
     };
     [row.map_or_else(String::new, |row| verdict(row.verdict)), renderer.name.clone(), text]
 }

@@ -26,16 +26,18 @@ const COLUMNS: [&str; 14] = [
 ];
 
 impl Report {
-    /// Writes everything as JSON, with the verdicts and where each number breaks, in one step.
+    /// Writes everything as JSON, with where each number breaks, and the verdicts if it is complete, in one step.
     ///
     /// # Errors
     /// As [`write_atomically`].
     pub fn save_json(&self, path: &Path) -> Result<()> {
-        let promises = self.judge();
         let breaks = self.breaks();
         write_atomically(path, |file| {
             let mut all = serde_json::to_value(self)?;
-            all["promises"] = serde_json::to_value(&promises)?;
+            // Rows that are still to come would read as broken promises.
+            if self.complete {
+                all["promises"] = serde_json::to_value(self.judge())?;
+            }
             all["breaks"] = serde_json::to_value(&breaks)?;
             serde_json::to_writer_pretty(&mut *file, &all)?;
             file.write_all(b"\n")
@@ -82,4 +84,43 @@ fn record(row: &Row) -> [String; COLUMNS.len()] {
         text(row.largest_error),
         row.note.clone(),
     ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::measure::bench::Device;
+    use crate::measure::stress::{Extent, StressSettings};
+
+    #[test]
+    fn a_report_that_is_not_complete_judges_no_promise() {
+        let mut report = Report {
+            program: String::new(),
+            device: Device {
+                renderer: String::new(),
+                vendor: String::new(),
+                version: String::new(),
+                driver: String::new(),
+                software: true,
+                processor: String::new(),
+                threads: 1,
+            },
+            settings: StressSettings { extent: Extent::Quick, planted: false },
+            pruned: Vec::new(),
+            rows: Vec::new(),
+            renderers: Vec::new(),
+            complete: false,
+        };
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("stress.json");
+        let saved = |report: &Report| -> serde_json::Value {
+            report.save_json(&path).unwrap();
+            serde_json::from_slice(&std::fs::read(&path).unwrap()).unwrap()
+        };
+        let partial = saved(&report);
+        assert!(partial["complete"] == false && partial.get("promises").is_none(), "{partial}");
+        report.compare_renderers(Vec::new());
+        let whole = saved(&report);
+        assert!(whole["complete"] == true && whole["promises"][0]["verdict"] == "broken", "{whole}");
+    }
 }

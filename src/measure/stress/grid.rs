@@ -161,20 +161,24 @@ impl Subject<'_> {
     }
 }
 
-/// At each limit, and one photon past it: one bright pixel in the corner and a single photon elsewhere, n = 1; for u16 in
-/// one box, n = 2^16 - 1.
+/// At each limit, and one photon past it: one bright pixel in the corner and a single photon elsewhere, n = 1. For u16 and
+/// u32 the photon is in the same box, n is the limit, and one more photon, in no box with them, makes the table wrap.
 fn limits(gl: &Gl) -> Result<Vec<Row>> {
     let mut rows = Vec::new();
-    for (number, limit, promise, n) in [
-        (Number::F32Doubling4, 1 << 24, "f32-total", 1),
-        (Number::F16, 1 << 11, "f16-total", 1),
-        (Number::U16, (1 << 16) - 1, "u16-wraps", (1 << 16) - 1),
+    for (number, limit, promise, is_of_boxes) in [
+        (Number::F32Doubling4, 1 << 24, "f32-total", false),
+        (Number::F16, 1 << 11, "f16-total", false),
+        (Number::U16, (1 << 16) - 1, "u16-wraps", true),
+        (Number::U32Doubling, u32::MAX, "u32-wraps", true),
+        (Number::U32Scan, u32::MAX, "u32-wraps", true),
     ] {
         for past in [0, 1] {
-            let mut counts = Image::filled(UVec2::splat(64), 0_u32);
-            let single = if number == Number::U16 { 1 } else { 40 };
+            let mut counts = Image::filled(UVec2::splat(128), 0_u32);
+            let single = if is_of_boxes { 1 } else { 40 };
             counts.set(0, 0, limit - 1 + past);
             counts.set(single, single, 1);
+            counts.set(127, 127, u32::from(is_of_boxes));
+            let n = if is_of_boxes { limit } else { 1 };
             let search = Search { min_photons: n, max_radius: 3, edges: Edges::Zero, order: Order::Binary };
             let exact = crate::reference::radius(&counts, search).radius;
             let subject = Subject { counts: &counts, exact: &exact, search, number };
@@ -184,13 +188,45 @@ fn limits(gl: &Gl) -> Result<Vec<Row>> {
                 row.promises = vec!["accepted-is-exact".to_owned(), promise.to_owned()];
                 let is_accepted = row.decision == Some(Decision::Accepted);
                 row.verdict = Verdict::kept_if(is_accepted && row.wrong == Some(0));
+                rows.push(row);
             } else {
-                row.promises.push("limits-are-real".to_owned());
-                let is_wrong = row.decision == Some(Decision::Refused) && row.wrong != Some(0);
-                row.verdict = row.verdict.max(Verdict::kept_if(is_wrong));
+                rows.extend([is_real(&row), row]);
             }
-            rows.push(row);
         }
     }
     Ok(rows)
+}
+
+/// Whether what is refused a photon past a limit would have been wrong; a row of its own, since the refusal itself may be
+/// right all the same.
+fn is_real(refused: &Row) -> Row {
+    let is_wrong =
+        refused.decision == Some(Decision::Refused) && refused.wrong.is_some_and(|wrong| wrong > 0);
+    Row {
+        wrong: refused.wrong,
+        of: refused.of,
+        note: "wrong, as it should be".to_owned(),
+        ..Row::new(format!("{}/is-wrong", refused.id), &["limits-are-real"], Verdict::kept_if(is_wrong))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_limit_that_is_not_real_leaves_the_refusal_kept() {
+        let refused = |wrong| Row {
+            decision: Some(Decision::Refused),
+            wrong: Some(wrong),
+            of: Some(9),
+            ..Row::new("limit/f16/and-1", &["refused-first"], Verdict::Kept)
+        };
+        let (real, idle) = (is_real(&refused(4)), is_real(&refused(0)));
+        assert_eq!((real.verdict, idle.verdict), (Verdict::Kept, Verdict::Broken));
+        assert_eq!((idle.id.as_str(), idle.number), ("limit/f16/and-1/is-wrong", None));
+        assert_eq!(idle.promises, ["limits-are-real"]);
+        let accepted = Row { decision: Some(Decision::Accepted), ..refused(4) };
+        assert_eq!(is_real(&accepted).verdict, Verdict::Broken);
+    }
 }

@@ -16,6 +16,9 @@ pub fn question(density: f64) -> Search {
     Search { min_photons, max_radius: MAX_RADIUS, edges: Edges::Scale, order: Order::Binary }
 }
 
+/// The side past which a row takes gigabytes.
+const LARGEST: u32 = 8192;
+
 /// Maps of one side.
 pub(super) struct Level {
     pub(super) side: u32,
@@ -24,8 +27,10 @@ pub(super) struct Level {
     pub(super) numbers: &'static [Number],
 }
 
-/// Boxes hold less than 2^32 of it, and maps of 256 x 256 four times that: for u32 alone.
-const PAST_2_TO_THE_32: f64 = 262_144.0;
+/// The brackets' boxes, of MR and 32 more, hold less than 2^32 of it, and maps of 256 x 256 more: for u32 alone.
+const PAST_2_TO_THE_32: f64 = 100_000.0;
+/// Its shapes: of the others a box would hold more.
+const EVEN: &[Shape] = &[Shape::Uniform, Shape::HalfInShadow, Shape::Checkerboard];
 
 /// What is run for an extent, on textures of at most `largest` a side.
 pub(super) fn levels(extent: Extent, largest: u32) -> Vec<Level> {
@@ -49,31 +54,38 @@ pub(super) fn levels(extent: Extent, largest: u32) -> Vec<Level> {
             level(2048, &[2, 6], few, &Number::FEW),
             level(4096, &[0, 6], &few[..2], &Number::FEW[..3]),
         ],
-        Extent::Full => [64, 256, 1024, 2048, 4096]
-            .into_iter()
-            .map(|side| level(side, &all, &Shape::ALL, &Number::ALL))
-            .collect(),
+        Extent::Full => {
+            let sides = [64, 256, 1024, 2048, 4096].into_iter();
+            let mut levels: Vec<_> = sides.map(|side| level(side, &all, &Shape::ALL, &Number::ALL)).collect();
+            levels.push(level(LARGEST, &[0, 6], &few[..2], &Number::FEW[..3]));
+            levels
+        }
     };
     levels.push(Level {
         side: 256,
         densities: vec![PAST_2_TO_THE_32],
-        shapes: &[Shape::Uniform, Shape::HalfInShadow, Shape::Checkerboard],
+        shapes: EVEN,
         numbers: &[Number::U32Scan, Number::U32Doubling],
     });
     levels.retain(|level| level.side <= largest);
     levels
 }
 
-/// What an extent leaves out of sides 64 to 4096, densities 4^-3 to 4^6, all shapes and numbers.
+/// What an extent leaves out of what the device can have: sides 64 to 4096, densities 4^-3 to 4^6, all shapes and numbers.
 pub(super) fn pruned(extent: Extent, largest: u32) -> Vec<String> {
     let mut pruned = match extent {
-        Extent::Quick => vec!["sides past 256; all but 3 and 2 of 10 densities".to_owned()],
+        Extent::Quick => {
+            vec!["sides past 256; all but 3 and 2 of 10 densities; past 10^6 kernels a pixel".to_owned()]
+        }
         Extent::Usual => vec![
             "densities: 6 of 10 at side 256, 4 at 1024, 2 at 2048 and 4096".to_owned(),
             "shapes: uniform, spike and corner at 2048, the first two at 4096".to_owned(),
             "numbers: 5 of 10 at 2048, 3 at 4096".to_owned(),
         ],
-        Extent::Full => Vec::new(),
+        Extent::Full if largest < LARGEST => Vec::new(),
+        Extent::Full => {
+            vec![format!("2 of 10 densities, 2 of 6 shapes, 3 of 10 numbers at side {LARGEST}; all past it")]
+        }
     };
     if largest < 4096 {
         pruned.push(format!("sides past {largest}, the largest texture of this device"));
@@ -84,6 +96,7 @@ pub(super) fn pruned(extent: Extent, largest: u32) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::exactness::CountBounds;
 
     #[test]
     fn questions_grow_with_the_density() {
@@ -99,5 +112,24 @@ mod tests {
         assert_eq!(rows(Extent::Full), 5 * 10 * 6 * 10 + 6);
         assert!(pruned(Extent::Full, 4096).is_empty() && rows(Extent::Usual) < rows(Extent::Full));
         assert!(levels(Extent::Full, 1024).iter().all(|level| level.side <= 1024));
+        // Where textures are larger, a few larger maps are run, and what they leave out is told.
+        let sides = |largest| levels(Extent::Full, largest).iter().map(|level| level.side).max();
+        assert_eq!([4096, 8191, 16_384].map(sides), [4096, 4096, 8192].map(Some));
+        assert_eq!(pruned(Extent::Full, 16_384).len(), 1);
+    }
+
+    #[test]
+    fn even_maps_wrap_a_table_and_fit_the_boxes_of_brackets() {
+        for shape in EVEN {
+            let map = shape.map(256, PAST_2_TO_THE_32, 1);
+            let search = Search { order: Order::Bracketed, ..question(PAST_2_TO_THE_32) };
+            assert_eq!(search.largest_counted_radius(), 64);
+            let bounds = CountBounds::of(&map, search);
+            assert!(bounds.total > 1 << 32 && bounds.densest_box < 1 << 32, "{shape:?}: {bounds:?}");
+        }
+        // Twice as many do not.
+        let map = Shape::HalfInShadow.map(256, 2.0 * PAST_2_TO_THE_32, 1);
+        let search = Search { order: Order::Bracketed, ..question(PAST_2_TO_THE_32) };
+        assert!(CountBounds::of(&map, search).densest_box >= 1 << 32);
     }
 }

@@ -25,7 +25,7 @@ use crate::error::Result;
 use crate::gl::Gl;
 use crate::measure::bench::Device;
 
-pub use bits::{Bits, Case, Renderer, cases};
+pub use bits::{Bits, Case, Found, Renderer, cases};
 pub use breaks::Break;
 pub use level::question;
 pub use number::Number;
@@ -41,7 +41,7 @@ pub enum Extent {
     Quick,
     /// Up to sides of 4096, with fewer densities, shapes and numbers as sides grow: within ten minutes.
     Usual,
-    /// Everything.
+    /// Everything at sides of 64 to 4096, and a little at 8192 where the device has such textures: for hours.
     Full,
 }
 
@@ -69,6 +69,8 @@ pub struct Report {
     pub rows: Vec<Row>,
     /// The same maps on other renderers and numbers of threads.
     pub renderers: Vec<Renderer>,
+    /// Whether nothing is to come: until then no promise is judged in the files.
+    pub complete: bool,
 }
 
 /// How far a run is.
@@ -91,13 +93,15 @@ impl Report {
             pruned: level::pruned(settings.extent, gl.info().max_texture_size),
             rows: Vec::new(),
             renderers: Vec::new(),
+            complete: false,
         }
     }
 
-    /// Adds what the renderers found, and the rows that compare it with the definition.
+    /// Adds what the renderers found, and the rows that compare it with the definition; with it a report is complete.
     pub fn compare_renderers(&mut self, renderers: Vec<Renderer>) {
         self.rows.extend(bits::rows(&renderers));
         self.renderers = renderers;
+        self.complete = true;
     }
 
     /// The verdict on each promise, by the rows that back it.
@@ -113,7 +117,8 @@ impl Report {
     }
 }
 
-/// Runs everything that one context can tell; `each` is called after each row, to save and to show.
+/// Runs everything that one context can tell; `each` is called after each row, to save and to show. The report is complete
+/// with [`Report::compare_renderers`].
 ///
 /// # Errors
 /// Those of the device, and of `each`.

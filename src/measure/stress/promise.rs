@@ -29,7 +29,7 @@ pub const PROMISES: [Promise; 15] = [
     },
     Promise {
         id: "refused-first",
-        text: "what could round or wrap is refused before it is computed",
+        text: "what could round or wrap is refused: by the plan, and by a render in place of its map",
         stated_in: "README, Methods; exactness::plan",
     },
     Promise {
@@ -51,7 +51,7 @@ pub const PROMISES: [Promise; 15] = [
     Promise { id: "f16-total", text: "f16 tables up to 2^11", stated_in: "exactness, fact 3; Storage::F16" },
     Promise {
         id: "limits-are-real",
-        text: "one photon past the limits of f32, f16 and u16 gives wrong radii",
+        text: "one photon past the limits of u32, u16, f32 and f16 gives wrong radii",
         stated_in: "exactness",
     },
     Promise {
@@ -66,7 +66,7 @@ pub const PROMISES: [Promise; 15] = [
     },
     Promise {
         id: "splat-sum",
-        text: "a pixel's sum of kernels is off by less than 2^-9 of it",
+        text: "a pixel's sum of up to 10^7 kernels is off by less than 2^-9 of it",
         stated_in: "splat",
     },
     Promise {
