@@ -16,8 +16,8 @@ uniform sampler2D primitives;
 uniform vec3 place;
 // Its normal, or the axis of its cone.
 uniform vec3 axis;
-// Of its cone, in radians; negative for a surface, which shines by the cosine.
-uniform float half_angle;
+// Cosine of its cone's half angle; below -1 for a surface, which shines by the cosine.
+uniform float cone_cosine;
 // Power per solid angle along the axis.
 uniform vec3 intensity;
 // 0 and 1 along x, 2 and 3 along y, 4 and 5 along z.
@@ -68,7 +68,7 @@ bool is_sphere_between(vec3 from, vec3 away, vec3 centre, float radius)
 
 // What a primitive does to the light between two places.
 const int APART = 0;
-// Only the triangle's plane is between them.
+// Only the triangle's plane is between them, and not close to the first.
 const int BESIDE = 1;
 const int BETWEEN = 2;
 
@@ -86,7 +86,12 @@ int triangle_between(vec3 from, vec3 away, vec3 corner, vec3 edge1, vec3 edge2)
     float second = dot(cross(met, edge2), across) / (size * size);
     float third = dot(cross(edge1, met), across) / (size * size);
     // A little wide, so that neighbours leave no gap.
-    return min(second, third) >= -1e-5 && second + third <= 1.00001 ? BETWEEN : BESIDE;
+    if (min(second, third) >= -1e-5 && second + third <= 1.00001) {
+        return BETWEEN;
+    }
+    // Next to a triangle that is thinner than a texel, planes of its neighbours pass this close to it. It may be lit.
+    float two_texels = 4.0 / float(textureSize(nearest, 0).x);
+    return before / (before - after) > two_texels ? BESIDE : APART;
 }
 
 int between(vec3 from, vec3 away, int primitive)
@@ -137,8 +142,8 @@ void main()
     vec3 to_light = away * inversesqrt(squared);
     float cosine = dot(facing.xyz, to_light);
     float shines = -dot(axis, to_light);
-    if (half_angle >= 0.0) {
-        shines = acos(clamp(shines, -1.0, 1.0)) <= half_angle ? 1.0 : 0.0;
+    if (cone_cosine >= -1.0) {
+        shines = clamp(shines, -1.0, 1.0) >= cone_cosine ? 1.0 : 0.0;
     }
     if (cosine > 0.0 && shines > 0.0 && is_lit(from)) {
         irradiance = vec4(intensity * shines * cosine / squared, 1.0);

@@ -5,7 +5,7 @@
 //! - Against the thesis: maps hold primitives instead of depths, and pixels meet those again, exactly. So shadows have edges
 //!   as sharp as with rays, and there is no depth bias: only what is nearer to a surface than 10^-4 of the scene's extent casts
 //!   no shadow on it. What no texel sees, since it is thinner or behind something else, casts none either; a gap
-//!   between triangles that is thinner than a texel is taken for a crack, and closed.
+//!   between triangles that is thinner than a texel is taken for a crack, and closed, if it is more than two texels away.
 //! - Glass and mirrors cast hard shadows: photons bring the light that passes them.
 //! - Places are the same for all pixels: few of them give steps, where rays give noise.
 //! - Cost: for each place a draw of the scene and one pass over the picture for each side of the cube that it shines through:
@@ -96,13 +96,18 @@ impl ShadowMaps {
             .read("primitives", &self.primitives)
             .set("place", place)
             .set("axis", light.axis.as_vec3())
-            .set("half_angle", light.half_angle.unwrap_or(-1.0))
+            .set("cone_cosine", light.half_angle.map_or(-2.0, cosine))
             .set("intensity", light.intensity.as_vec3())
             .set("face", i32::try_from(face).unwrap_or_else(|_| unreachable!("one of six")))
             .set("to_face", to_face)
             .set("margin", self.margin)
             .add(&mut self.irradiance)
     }
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "f32 is what a shader takes")]
+fn cosine(angle: f32) -> f32 {
+    f64::from(angle).cos() as f32
 }
 
 /// Triangles and spheres in the order of their numbers, three texels each.

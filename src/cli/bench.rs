@@ -38,15 +38,13 @@ pub(crate) struct Args {
           default_value_ifs([("suite", "fast", "1024"), ("suite", "picture", "512")]))]
     sizes: Vec<UVec2>,
 
-    /// Sizes of a suite's maps on which builds alone are timed.
-    #[arg(long, value_delimiter = ',', default_value = "64,128,256,512,1024,2048", value_parser = parse_size,
-          requires = "suite")]
-    build_sizes: Vec<UVec2>,
+    /// Sizes of maps of --suite fast on which builds alone are timed [default: 64,128,256,512,1024,2048].
+    #[arg(long, value_delimiter = ',', value_parser = parse_size, requires = "suite")]
+    build_sizes: Option<Vec<UVec2>>,
 
-    /// Photons of --suite picture that are traced and drawn.
-    #[arg(long, default_value = "1e6", value_parser = super::photons::parse_count, requires = "suite",
-          value_name = "NUMBER")]
-    photons: u32,
+    /// Photons of --suite picture that are traced and drawn [default: 1e6].
+    #[arg(long, value_parser = super::photons::parse_count, requires = "suite", value_name = "NUMBER")]
+    photons: Option<u32>,
 
     /// Map to time with, again for more: a kind of `varikernel synth`, or an EXR, PNG or NPY file of counts.
     #[arg(long = "map", value_name = "FILE|KIND", default_value = "caustic")]
@@ -96,9 +94,9 @@ pub(crate) struct Args {
     #[arg(long)]
     rivals: bool,
 
-    /// How often: 5 sets of up to 100 samples, or the thesis's 5 sets of up to 1000; slow cases take fewer.
-    #[arg(long, value_enum, default_value_t = ProtocolName::Short)]
-    protocol: ProtocolName,
+    /// How often: 5 sets of up to 100 samples, or the thesis's 5 sets of up to 1000; slow cases take fewer [default: short].
+    #[arg(long, value_enum)]
+    protocol: Option<ProtocolName>,
 
     /// Time to share out among all cases, such as 90s or 5m [default: 60s, 3m for --suite fast, or 10m for the thesis's
     /// protocol].
@@ -129,7 +127,7 @@ pub(crate) struct Args {
 }
 
 /// What a suite leaves no choice of.
-const FIXED_BY_SUITE: [&str; 9] = [
+const FIXED_BY_SUITE: [&str; 10] = [
     "maps",
     "channel",
     "methods",
@@ -139,6 +137,7 @@ const FIXED_BY_SUITE: [&str; 9] = [
     "edges",
     "sat_build",
     "sat_samples",
+    "storage",
 ];
 
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]
@@ -164,6 +163,11 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     }
     if let Some(SuiteName::Picture) = args.suite {
         return picture::run(args);
+    }
+    if args.photons.is_some() {
+        bail!(
+            "--photons is not possible with --suite fast\nhelp: it takes --sizes, --build-sizes and --rivals"
+        );
     }
     // What can be refused without timing is refused first.
     let json = args.json.as_ref().or(args.resume.as_ref());
@@ -200,15 +204,15 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
 fn settings(args: &Args) -> BenchSettings {
     let minute = Duration::from_secs(60);
     let short = if args.suite.is_some() { 3 * minute } else { minute };
-    let protocol = match args.protocol {
+    let protocol = match args.protocol.unwrap_or(ProtocolName::Short) {
         ProtocolName::Short => Protocol::within(args.budget.unwrap_or(short)),
         ProtocolName::Thesis => Protocol::thesis(args.budget.unwrap_or(10 * minute)),
     };
     let rivals = if args.rivals { Rival::ALL.to_vec() } else { Vec::new() };
     if let Some(SuiteName::Fast) = args.suite {
-        let [sizes, build_sizes] =
-            [&args.sizes, &args.build_sizes].map(|sizes| sizes.iter().map(UVec2::to_array).collect());
-        let suite = FastSuite { sizes, build_sizes };
+        let of = |sizes: &Vec<UVec2>| sizes.iter().map(UVec2::to_array).collect();
+        let build_sizes = args.build_sizes.as_ref().map_or_else(|| FastSuite::default().build_sizes, of);
+        let suite = FastSuite { sizes: of(&args.sizes), build_sizes };
         return BenchSettings { rivals, ..BenchSettings::fast(suite, protocol) };
     }
     BenchSettings {

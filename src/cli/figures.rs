@@ -34,7 +34,7 @@ const TOO_LARGE: u32 = 4;
 /// Draws one scene with the best fixed radius (Figure 1.2), one four times as large (1.3), one pixel (1.4), and
 /// variable ones, from the same photons. Errors are those of indirect light against a reference: the photons of each pixel
 /// alone, averaged over other seeds; they are also told for the caustics alone, where the reference's indirect irradiance is
-/// more than three times its median, and for the other diffuse pixels, the walls. The folder gets figures.png, figures.json and each picture.
+/// more than three times its median, and for the other diffuse pixels, the walls; not if the median is 0. The folder gets figures.png, figures.json and each picture.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
     #[command(flatten)]
@@ -84,6 +84,8 @@ struct Report {
     reference_seeds: u32,
     /// How far two halves of the reference's seeds are apart, halved: its own noise. SSIM and FLIP are of the halves.
     reference_noise: PictureError,
+    /// The same in each region.
+    reference_noise_of_regions: RegionErrors,
     figures: Vec<Figure>,
     /// Pixels of the caustics, and of the walls.
     region_pixels: [usize; 2],
@@ -127,6 +129,7 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
         .map_err(in_words_of_options)?;
     let regions = Regions::new(&halves[0].albedo, &mean(&halves[0].irradiance, &halves[1].irradiance));
     let region_pixels = regions.sizes();
+    let reference_noise_of_regions = regions.noise([&first.indirect, &second.indirect]);
     let mut studio = Studio { renderer, settings, indirect, beauty: beauty.clone(), regions };
     let fixed = studio.fixed_radii(&bar)?;
     let best = fixed
@@ -167,6 +170,7 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
         renderer: gl.info().renderer.clone(),
         reference_seeds: args.reference_seeds,
         reference_noise,
+        reference_noise_of_regions,
         figures,
         region_pixels,
         fixed,
@@ -285,8 +289,7 @@ fn print(report: &Report, args: &Args) -> Result<()> {
     };
     rows.extend(report.figures.iter().map(|figure| row(figure.name, figure.error, figure.regions)));
     rows.extend(report.fixed.iter().map(|of| row(&format!("Radius {}", of.radius), of.error, of.regions)));
-    let nowhere = RegionErrors { caustic: None, walls: None };
-    rows.push(row("Reference's own noise", report.reference_noise, nowhere));
+    rows.push(row("Reference's own noise", report.reference_noise, report.reference_noise_of_regions));
     output::print_rows(&rows)?;
     output::print(&format!("written: {}", args.output.join("figures.png").display()))
 }

@@ -48,9 +48,11 @@ pub(crate) struct Args {
     #[arg(long, requires = "gather")]
     count_correction: bool,
 
-    /// Make a reference: each pixel keeps its own photons only, averaged over this many seeds, saved as it goes.
+    /// Make a reference: each pixel keeps its own photons only, averaged over this many seeds, saved as it goes. The seeds are
+    /// those after --seed, so that it holds no photon of the picture that it is compared with. Nothing is spread, so that
+    /// options about kernels are refused.
     #[arg(long, value_name = "SEEDS", num_args = 0..=1, default_missing_value = "16")]
-    #[arg(conflicts_with_all = ["gather", "radius"])]
+    #[arg(conflicts_with_all = ["gather", "radius", "first_bounce", "kernel", "min_photons", "max_radius"])]
     reference: Option<u32>,
 
     /// How direct light finds what is in its way: by shadow rays, or by shadow maps around --light-samples places on each
@@ -67,6 +69,16 @@ pub(crate) struct Args {
     json: bool,
 }
 
+impl Args {
+    fn estimate(&self) -> Estimate {
+        if self.gather {
+            Estimate::Gather { count_correction: self.count_correction }
+        } else {
+            Estimate::Splat
+        }
+    }
+}
+
 pub(crate) fn run(args: &Args) -> Result<Outcome> {
     check_output(&args.output)?;
     args.source.check_exposure()?;
@@ -75,11 +87,7 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
         radius: args.radius,
         first_bounce: args.first_bounce,
         direct: args.direct,
-        estimate: if args.gather {
-            Estimate::Gather { count_correction: args.count_correction }
-        } else {
-            Estimate::Splat
-        },
+        estimate: args.estimate(),
         ..args.source.picture()
     };
     settings.validate().and_then(|()| trace.validate()).map_err(in_words_of_options)?;

@@ -14,7 +14,7 @@ mod table;
 pub use definition::{enough, radius};
 pub use naive_mipmap::naive_mipmap;
 #[cfg(feature = "render")]
-pub use picture::{Shown, gather, photon_density, splat};
+pub use picture::{Shown, gather, gather_at, photon_density, photon_power, splat};
 pub use table::{Table, binary_search, radius_by_table};
 
 use glam::UVec2;

@@ -170,30 +170,52 @@ pub fn gather(
     radius: &Image<u32>,
     kernel: Kernel,
 ) -> (Image<[f64; 3]>, Image<u32>) {
-    let counts = photon_density(shown, photons);
+    let (power, counts) = (photon_power(shown, photons), photon_density(shown, photons));
+    let mut found = counts.map(|_| 0);
+    let irradiance = Image::from_fn(shown.position.size(), |x, y| {
+        let pixel = UVec2::new(x, y);
+        let (irradiance, photons) = gather_at(shown, pixel, &power, &counts, radius.at(x, y), kernel);
+        found.set(x, y, photons);
+        irradiance
+    });
+    (irradiance, found)
+}
+
+/// Power of the photons that contribute to each pixel, linear RGB.
+#[must_use]
+pub fn photon_power(shown: &Shown, photons: &[PhotonPoint]) -> Image<[f64; 3]> {
     let mut power = Image::filled(shown.position.size(), [0.0; 3]);
     for photon in photons {
         let Some(UVec2 { x, y }) = shown.home(photon) else { continue };
         power.set(x, y, (DVec3::from(power.at(x, y)) + photon.power.as_dvec3()).to_array());
     }
-    let mut found = counts.map(|_| 0);
-    let irradiance = Image::from_fn(shown.position.size(), |x, y| {
-        let surface = shown.at(UVec2::new(x, y));
-        if surface.number <= 0 {
-            return [0.0; 3];
+    power
+}
+
+/// What [`gather`] gives at one pixel, from the power and the density of the photons.
+#[must_use]
+pub fn gather_at(
+    shown: &Shown,
+    pixel: UVec2,
+    power: &Image<[f64; 3]>,
+    density: &Image<u32>,
+    radius: u32,
+    kernel: Kernel,
+) -> ([f64; 3], u32) {
+    let surface = shown.at(pixel);
+    if surface.number <= 0 {
+        return ([0.0; 3], 0);
+    }
+    let disc = shown.kernel_on(surface.position, surface, radius);
+    let (mut gathered, mut area, mut photons) = (DVec3::ZERO, 0.0, 0);
+    for UVec2 { x, y } in shown.pixels() {
+        let pixel = UVec2::new(x, y);
+        let weight = disc.weight(kernel, shown.at(pixel));
+        if weight > 0.0 {
+            gathered += weight * DVec3::from(power.at(x, y));
+            area += weight * shown.area(pixel);
+            photons += density.at(x, y);
         }
-        let disc = shown.kernel_on(surface.position, surface, radius.at(x, y));
-        let (mut gathered, mut area, mut photons) = (DVec3::ZERO, 0.0, 0);
-        for pixel in shown.pixels() {
-            let weight = disc.weight(kernel, shown.at(pixel));
-            if weight > 0.0 {
-                gathered += weight * DVec3::from(power.at(pixel.x, pixel.y));
-                area += weight * shown.area(pixel);
-                photons += counts.at(pixel.x, pixel.y);
-            }
-        }
-        found.set(x, y, photons);
-        (gathered / area).to_array()
-    });
-    (irradiance, found)
+    }
+    ((gathered / area).to_array(), photons)
 }

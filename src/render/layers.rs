@@ -51,6 +51,10 @@ pub struct Account {
 
 impl Account {
     /// By how much power out differs from power in, over power in: the worst of the three colours.
+    ///
+    /// Both are sums of blending in f32. Power in is one sum for each pixel, which of N alike photons on a pixel is off by up to
+    /// N 2^-25 of itself; power out is summed more closely. So where a pixel holds 10^5 photons or more, a larger error may be
+    /// that of power in.
     #[must_use]
     pub fn energy_error(&self) -> f64 {
         let pairs = self.power_in.iter().zip(self.power_out);

@@ -38,7 +38,10 @@ impl Light {
         let surfaces = SurfaceStage::new(gl)?.draw(scene, view)?;
         progress(Progress { stage: "direct light", done: 0.0 });
         let sight = Sight::new(scene, &view);
-        let mut show = |done| progress(Progress { stage: "direct light", done });
+        #[expect(clippy::cast_precision_loss, reason = "a share")]
+        let straight = sight.straight.len() as f64 / (sight.straight.len() + sight.bent.len()).max(1) as f64;
+        // Straight places come first, then bent ones.
+        let mut show = |done: f64| progress(Progress { stage: "direct light", done: straight * done });
         let mut direct = Image::filled(settings.size, [0.0; 4]);
         for &(pixel, radiance) in &sight.lights {
             add(&mut direct, pixel, radiance.as_dvec3());
@@ -52,6 +55,9 @@ impl Light {
             }
         }
         // Places in mirrors and behind glass have seeds of their own.
+        let mut show = |done: f64| {
+            progress(Progress { stage: "direct light", done: straight + (1.0 - straight) * done });
+        };
         trace(scene, &sight.bent, settings, settings.seed.wrapping_add(1 << 32), &mut direct, &mut show);
         for place in &sight.straight {
             let (x, y) = (place.pixel % settings.size.x, place.pixel / settings.size.x);

@@ -1,7 +1,7 @@
 //! Scene in, picture out: the stages in order (thesis 2.4, 2.6).
 //!
-//! Surfaces, density, radii, splats and shading are passes on OpenGL; photons, soft shadows and what is seen in mirrors and
-//! through glass are rays on the CPU.
+//! Surfaces, density, radii, splats and shading are passes on OpenGL; photons and what is seen in mirrors and through glass are
+//! rays on the CPU. Direct light and what photons meet first are either: shadow rays or shadow maps, rays or bounce maps.
 
 mod direct;
 mod layers;

@@ -4,7 +4,7 @@ use super::{Account, Renderer};
 use crate::error::Result;
 use crate::frame::Frame;
 use crate::image::Image;
-use crate::maps::{ChosenRadius, IrradianceMap, PhotonPoints};
+use crate::maps::{ChosenRadius, IrradianceMap, PhotonPoints, SurfaceMaps};
 use crate::pipeline::RadiusPipeline;
 use crate::settings::{Estimate, PictureSettings, RadiusChoice};
 use crate::splat::{GatherStage, SplatStage};
@@ -45,6 +45,12 @@ impl Stages {
     #[must_use]
     pub fn photons(&self) -> &PhotonPoints {
         &self.renderer.traced.points
+    }
+
+    /// What each pixel shows.
+    #[must_use]
+    pub fn surfaces(&self) -> &SurfaceMaps {
+        &self.renderer.surfaces
     }
 
     /// Counts all photons anew.

@@ -81,6 +81,40 @@ fn a_point_lamp_by_hand_and_its_shadow() {
     assert_eq!(lit, expected);
 }
 
+/// A ridge along y with slopes of 45 degrees, whose top is cut off: a strip that faces the lamp.
+fn cut_ridge(top: f64, side: f64, half_width: f64) -> String {
+    let [edge, foot, low] = [half_width, side + half_width, top - side];
+    let strip = |left: f64, at: f64, right: f64, to: f64| {
+        format!("[[{left}, -2, {at}], [{right}, -2, {to}], [{right}, 2, {to}], [{left}, 2, {at}]]")
+    };
+    let [left, middle, right] =
+        [strip(-foot, low, -edge, top), strip(-edge, top, edge, top), strip(edge, top, foot, low)];
+    format!("[surfaces.ridge]\nmaterial = \"white\"\nquads = [{left}, {middle}, {right}]")
+}
+
+/// A texel is 1/256 of the distance wide, and the middles of those next to the strip's middle are on the slopes. As what receives
+/// light the strip is lit; as what is in its way it lets none through.
+#[test]
+fn a_strip_that_no_texel_sees_is_lit_and_casts_a_shadow() {
+    let gl = egl();
+    // 33 columns: the middle one shows the strip, at distance 1.5 from the lamp.
+    let receives = lamp_and_wall(POINT, &cut_ridge(-0.5, 0.4, 0.002));
+    let [traced, mapped] = [DirectLight::Traced, DirectLight::ShadowMap]
+        .map(|direct| picture(&gl, &receives, 33, direct, 1).direct);
+    assert!(
+        traced.at(16, 16)[1] > 0.0 && traced.at(15, 16)[1] < 0.9 * traced.at(16, 16)[1],
+        "the strip is seen"
+    );
+    assert_eq!(differing(&traced, &mapped, 1e-3), 0);
+    let dark = mapped.map(|_| [0.0; 3]);
+    assert!(differing(&traced, &dark, 1e-3) >= 33, "a dark strip is a difference");
+
+    // Behind the camera, as a roof over all that is seen.
+    let shades = lamp_and_wall(POINT, &cut_ridge(0.6, 0.59, 0.0005));
+    let mapped = picture(&gl, &shades, 33, DirectLight::ShadowMap, 1).direct;
+    assert!(mapped.values().iter().all(|value| value[1] == 0.0), "light comes through");
+}
+
 /// Spheres are met exactly: a ball casts a round shadow, the half of it that is turned away is dark, and nothing on it shades
 /// itself.
 #[test]

@@ -13,8 +13,7 @@ fn check(report: &PictureReport) {
     assert_eq!(names, ROWS);
     for row in &report.rows {
         assert!(row.statistics.median_ms > 0.0 && row.samples_ms.len() == row.statistics.count, "{row:?}");
-        let has_answer = !["gather", "photons"].contains(&row.name.as_str());
-        assert_eq!(row.right, has_answer.then_some(true), "{row:?}");
+        assert_eq!(row.right, Some(true), "{row:?}");
         let is_splat = row.name.starts_with("splat");
         assert_eq!((row.fragments_per_photon.is_some(), row.ns_per_fragment.is_some()), (is_splat, is_splat));
         assert_eq!(row.point_passes.is_some(), row.name != "photons");
@@ -37,7 +36,18 @@ fn check(report: &PictureReport) {
 #[test]
 fn every_stage_is_timed_and_its_answer_right() {
     let suite = PictureSuite { size: [48, 40], photons: 3000, samples: 3, ..PictureSuite::default() };
-    let report = suite.run(&crate::egl(), Duration::from_secs(60), &mut |_| ()).unwrap();
+    let mut saved: Vec<(PictureReport, f64)> = Vec::new();
+    let mut save = |report: &PictureReport, done: f64| {
+        saved.push((report.clone(), done));
+        Ok(())
+    };
+    let report = suite.run(&crate::egl(), Duration::from_secs(60), &mut save).unwrap();
+    assert_eq!(saved.len(), 3);
+    for (index, (report, done)) in saved.iter().enumerate() {
+        assert!(report.rows.iter().all(|row| row.samples_ms.len() == index + 1), "{report:?}");
+        assert!(*done > 0.0 && *done <= 1.0);
+    }
+    assert_eq!(saved[2], (report.clone(), 1.0));
     assert!(report.rows.iter().all(|row| row.samples_ms.len() == 3));
     check(&report);
 }
@@ -58,5 +68,16 @@ fn the_command_writes_what_it_found_and_refuses_what_it_does_not_take() {
         .stdout(contains("density, in point-only passes"));
     check(&serde_json::from_slice(&std::fs::read(&file).unwrap()).unwrap());
     bench(&["--sizes", "32,64"]).assert().code(2).stderr(contains("--sizes"));
-    bench(&["--rivals"]).assert().code(2).stderr(contains("--rivals"));
+    for refused in [
+        ["--rivals"].as_slice(),
+        &["--build-sizes", "64"],
+        &["--protocol", "thesis"],
+        &["--storage", "f32"],
+        &["--csv", "a.csv"],
+    ] {
+        bench(refused).assert().code(2).stderr(contains(refused[0]));
+    }
+    let mut fast = Command::cargo_bin("varikernel").unwrap();
+    fast.args(["bench", "--suite", "fast", "--photons", "2000"]);
+    fast.assert().code(2).stderr(contains("--photons"));
 }

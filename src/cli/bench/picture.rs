@@ -1,6 +1,7 @@
 //! `varikernel bench --suite picture`: what the stages of a picture cost.
 
 use std::io::Write as _;
+use std::path::Path;
 use std::time::Duration;
 
 use anyhow::{Result, bail};
@@ -18,9 +19,13 @@ pub(super) fn run(args: &Args) -> Result<Outcome> {
     let &[size] = args.sizes.as_slice() else {
         bail!("--suite picture is of one size: give one with --sizes")
     };
-    for (given, name) in
-        [(args.rivals, "rivals"), (args.csv.is_some(), "csv"), (args.resume.is_some(), "resume")]
-    {
+    for (given, name) in [
+        (args.build_sizes.is_some(), "build-sizes"),
+        (args.rivals, "rivals"),
+        (args.protocol.is_some(), "protocol"),
+        (args.csv.is_some(), "csv"),
+        (args.resume.is_some(), "resume"),
+    ] {
         if given {
             bail!(
                 "--{name} is not possible with --suite picture\nhelp: it takes --sizes, --photons, --budget and --json"
@@ -32,17 +37,25 @@ pub(super) fn run(args: &Args) -> Result<Outcome> {
     }
     let gl = context::open(&args.device)?;
     let budget = args.budget.unwrap_or(Duration::from_secs(60));
-    let suite = PictureSuite { size: size.to_array(), photons: args.photons, ..PictureSuite::default() };
+    let usual = PictureSuite::default();
+    let photons = args.photons.unwrap_or(usual.photons);
+    let suite = PictureSuite { size: size.to_array(), photons, ..usual };
     let bar = Bar::new();
-    let report = suite.run(&gl, budget, &mut |done| bar.show(Progress { stage: "bench", done }))?;
+    let report = suite.run(&gl, budget, &mut |report, done| {
+        bar.show(Progress { stage: "bench", done });
+        args.json.as_ref().map_or(Ok(()), |path| save(report, path))
+    })?;
     bar.finish();
-    if let Some(path) = &args.json {
-        let text = serde_json::to_string_pretty(&report)?;
-        write_atomically(path, |file| writeln!(file, "{text}"))?;
-    }
     print(&report)?;
     targets::print(&report.targets)?;
     Ok(Outcome::Done)
+}
+
+fn save(report: &PictureReport, path: &Path) -> varikernel::Result<()> {
+    write_atomically(path, |file| {
+        serde_json::to_writer_pretty(&mut *file, report)?;
+        writeln!(file)
+    })
 }
 
 fn print(report: &PictureReport) -> Result<()> {

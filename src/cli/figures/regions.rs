@@ -15,7 +15,7 @@ pub(super) struct RegionErrors {
 }
 
 /// Pixels on diffuse surfaces, by the reference's indirect irradiance (green): caustics are where it is more than three times
-/// its median, walls are the rest.
+/// its median, walls are the rest. If the median is 0, as in the dark with a lit spot, nothing is told apart: both are empty.
 #[derive(Clone, Debug)]
 pub(super) struct Regions {
     caustic: Vec<usize>,
@@ -32,6 +32,9 @@ impl Regions {
         let mut sorted: Vec<f32> = diffuse.iter().map(|&index| arrives(index)).collect();
         sorted.sort_by(f32::total_cmp);
         let limit = BRIGHTER * sorted.get(sorted.len() / 2).copied().unwrap_or(0.0);
+        if limit <= 0.0 {
+            return Self { caustic: Vec::new(), walls: Vec::new() };
+        }
         let caustic = diffuse.extract_if(.., |&mut index| arrives(index) > limit).collect();
         Self { caustic, walls: diffuse }
     }
@@ -49,6 +52,14 @@ impl Regions {
             (!pixels.is_empty()).then(|| LightError::between(&taken(picture), &taken(reference)))
         };
         RegionErrors { caustic: of(&self.caustic), walls: of(&self.walls) }
+    }
+
+    /// The noise of the mean of two pictures, from how far they are apart: half of that.
+    pub(super) fn noise(&self, halves: [&Image<[f32; 3]>; 2]) -> RegionErrors {
+        let of =
+            |error: LightError| LightError { rmse: error.rmse / 2.0, relative_mse: error.relative_mse / 4.0 };
+        let RegionErrors { caustic, walls } = self.errors(halves[0], halves[1]);
+        RegionErrors { caustic: caustic.map(of), walls: walls.map(of) }
     }
 }
 
@@ -69,6 +80,14 @@ mod tests {
         let RegionErrors { caustic, walls } = regions.errors(&picture, &reference);
         assert!((caustic.map_or(0.0, |error| error.rmse) - 2.0).abs() < 1e-12);
         assert!((walls.map_or(0.0, |error| error.rmse) - 3.0_f64.sqrt()).abs() < 1e-12);
+        // Half as far apart: 1, and half of the root of 3.
+        let RegionErrors { caustic, walls } = regions.noise([&picture, &reference]);
+        assert!((caustic.map_or(0.0, |error| error.rmse) - 1.0).abs() < 1e-12);
+        assert!((walls.map_or(0.0, |error| error.rmse) - 0.75_f64.sqrt()).abs() < 1e-12);
+        // Where most is dark, nothing is told apart.
+        let dark = Regions::new(&grey([0.5; 5]), &grey([0.0, 0.0, 0.0, 1.0, 9.0]));
+        assert_eq!(dark.sizes(), [0, 0]);
+        assert_eq!(dark.errors(&picture, &reference), RegionErrors { caustic: None, walls: None });
         // Without a caustic there is no error of it.
         let even = Regions::new(&grey([0.5; 5]), &grey([1.0; 5]));
         assert_eq!((even.sizes(), even.errors(&picture, &reference).caustic), ([0, 5], None));

@@ -30,15 +30,34 @@ pub(super) fn write(args: &Args, layers: &Layers, attributes: &[Attribute]) -> R
 /// What made the picture, for its file.
 pub(super) fn attributes(args: &Args, scene: &str) -> Vec<Attribute> {
     let source = &args.source;
+    let mut attributes = common(args, scene);
+    attributes.extend([
+        Attribute::text("varikernel.first_bounce", format!("{:?}", args.first_bounce)),
+        Attribute::integer("varikernel.min_photons", source.min_photons),
+        Attribute::integer("varikernel.max_radius", source.max_radius),
+        Attribute::text("varikernel.radius", format!("{:?}", args.radius)),
+        Attribute::text("varikernel.kernel", format!("{:?}", source.kernel)),
+        Attribute::text("varikernel.estimate", format!("{:?}", args.estimate())),
+    ]);
+    attributes
+}
+
+/// What made a reference of `seeds` seeds so far: those after the seed that is told.
+pub(super) fn reference_attributes(args: &Args, scene: &str, seeds: u32) -> Vec<Attribute> {
+    let mut attributes = common(args, scene);
+    attributes.push(Attribute::integer("varikernel.reference_seeds", seeds));
+    attributes
+}
+
+fn common(args: &Args, scene: &str) -> Vec<Attribute> {
+    let source = &args.source;
     vec![
         Attribute::text("varikernel.scene", scene),
         Attribute::integer("varikernel.photons", source.photons),
         Attribute::integer("varikernel.bounces", source.bounces),
         Attribute::text("varikernel.seed", source.seed.to_string()),
-        Attribute::integer("varikernel.min_photons", source.min_photons),
-        Attribute::integer("varikernel.max_radius", source.max_radius),
-        Attribute::text("varikernel.radius", format!("{:?}", args.radius)),
-        Attribute::text("varikernel.kernel", format!("{:?}", source.kernel)),
+        Attribute::text("varikernel.direct", format!("{:?}", args.direct)),
+        Attribute::integer("varikernel.light_samples", source.light_samples),
         Attribute::text("varikernel.version", env!("CARGO_PKG_VERSION")),
     ]
 }

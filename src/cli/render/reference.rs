@@ -4,13 +4,12 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Result, bail};
 use varikernel::Gl;
-use varikernel::image::Attribute;
 use varikernel::photon::TraceSettings;
 use varikernel::render::{Progress, Reference};
 use varikernel::scene::Scene;
 use varikernel::settings::PictureSettings;
 
-use super::files::{attributes, write};
+use super::files::{reference_attributes, write};
 use super::{Args, Bar, in_words_of_options};
 use crate::cli::{Outcome, output};
 
@@ -32,17 +31,16 @@ pub(super) fn render(
     let bar = Bar::new();
     let mut reference = Reference::new(gl, scene, settings, &mut |progress| bar.show(progress))?;
     let mut saved = Instant::now();
-    let mut attributes = attributes(args, &scene.title);
-    attributes.push(Attribute::integer("varikernel.reference_seeds", seeds));
     for seed in 0..seeds {
-        let trace = TraceSettings { seed: trace.seed.wrapping_add(u64::from(seed)), ..trace };
+        // The seed itself is that of the picture, which a reference must not know.
+        let trace = TraceSettings { seed: trace.seed.wrapping_add(1 + u64::from(seed)), ..trace };
         let mut show = |Progress { done, .. }: Progress| {
             let done = (f64::from(seed) + done) / f64::from(seeds);
             bar.show(Progress { stage: "reference", done });
         };
         reference.add_seed(scene, &trace, &mut show).map_err(in_words_of_options)?;
         if seed + 1 == seeds || saved.elapsed() > SAVE_EVERY {
-            write(args, &reference.picture()?, &attributes)?;
+            write(args, &reference.picture()?, &reference_attributes(args, &scene.title, seed + 1))?;
             saved = Instant::now();
         }
     }

@@ -7,7 +7,7 @@ use serde::Serialize;
 use varikernel::gl::DeviceInfo;
 use varikernel::photon::TraceSettings;
 use varikernel::render::Account;
-use varikernel::settings::PictureSettings;
+use varikernel::settings::{PictureSettings, RadiusChoice};
 
 use crate::cli::output;
 
@@ -29,7 +29,7 @@ pub(super) fn print(report: &Report<'_>) -> Result<()> {
     let Account { emitted, landings, uploaded, contributing, fragments, limited_share, .. } = report.account;
     #[expect(clippy::cast_precision_loss, reason = "counts are below 2^53")]
     let share = 100.0 * contributing as f64 / (landings as f64).max(1.0);
-    output::print_facts(&[
+    let mut facts = vec![
         ("scene", report.scene.to_owned()),
         ("renderer", report.device.renderer.clone()),
         ("photons", format!("{emitted} with {landings} landings, {uploaded} uploaded")),
@@ -38,11 +38,18 @@ pub(super) fn print(report: &Report<'_>) -> Result<()> {
             "fragments",
             format!("{:.1} a contributing photon", fragments / (contributing_or_one(contributing))),
         ),
-        ("limited", format!("{:.3} % of the pixels found too few photons", 100.0 * limited_share)),
+    ];
+    // With a fixed radius nothing is searched.
+    if report.settings.radius == RadiusChoice::Variable {
+        facts
+            .push(("limited", format!("{:.3} % of the pixels found too few photons", 100.0 * limited_share)));
+    }
+    facts.extend([
         ("energy", format!("kept to {:.1e}", report.energy_error)),
         ("time", format!("{:.1} s", report.seconds)),
         ("written", report.output.display().to_string()),
-    ])
+    ]);
+    output::print_facts(&facts)
 }
 
 #[expect(clippy::cast_precision_loss, reason = "counts are below 2^53")]

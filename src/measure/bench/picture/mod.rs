@@ -9,8 +9,9 @@
 //! | `gather` | every pixel gathering with its radius |
 //! | `photons` | photons traced on the CPU, with 8 diffuse landings at most |
 //!
-//! Rows take turns, one sample each, so that a machine that slows down slows all alike. Every answer is checked: counts against
-//! each other, radii against the definition, the splat by its energy.
+//! Rows take turns, one sample each, so that a machine that slows down slows all alike. Every answer is checked: counts and
+//! radii against the definition, the gather against it at 61 pixels, points by their number, the splat by its energy, and landings
+//! by their tally.
 
 mod rows;
 
@@ -62,13 +63,13 @@ pub struct PictureRow {
     pub statistics: Statistics,
     /// Which samples' query and clock contradict each other ([`Sample::is_suspect`]), counted from 0.
     pub suspect: Vec<usize>,
-    /// The median in point-only passes of this run; none on the CPU.
+    /// The median in point-only passes of this run; none on the CPU, or if the points are wrong.
     pub point_passes: Option<f64>,
     /// Fragments that a splat drew for each photon that contributes.
     pub fragments_per_photon: Option<f64>,
     /// The median over all fragments.
     pub ns_per_fragment: Option<f64>,
-    /// Whether the answer is right; none where there is nothing to hold it against.
+    /// Whether the answer is right; none in files of versions that did not check all.
     pub right: Option<bool>,
 }
 
@@ -94,11 +95,18 @@ pub struct PictureReport {
 }
 
 impl PictureSuite {
-    /// Times the stages until `budget` is spent, each at least once; `observe` is told the done share.
+    /// Times the stages until `budget` is spent, each at least once; after each round `observe` is told what was found so far,
+    /// and the done share.
     ///
     /// # Errors
-    /// Those of [`Renderer`](crate::render::Renderer), and [`Error::File`](crate::Error::File) for an unknown scene.
-    pub fn run(&self, gl: &Gl, budget: Duration, observe: &mut dyn FnMut(f64)) -> Result<PictureReport> {
+    /// Those of [`Renderer`](crate::render::Renderer) and `observe`, and [`Error::File`](crate::Error::File) for an unknown
+    /// scene.
+    pub fn run(
+        &self,
+        gl: &Gl,
+        budget: Duration,
+        observe: &mut dyn FnMut(&PictureReport, f64) -> Result<()>,
+    ) -> Result<PictureReport> {
         let start = Instant::now();
         let scene = Scene::shipped(&self.scene)?;
         let mut rows = Rows::new(gl, &scene, UVec2::from_array(self.size), self.photons)?;
@@ -108,27 +116,40 @@ impl PictureSuite {
         for (index, work) in Work::ALL.into_iter().enumerate() {
             right[index] = rows.warm_up(&mut timer, work)?;
         }
-        for round in 0..self.samples {
-            let spent = start.elapsed().as_secs_f64() / budget.as_secs_f64().max(1e-9);
-            if round > 0 && spent >= 1.0 {
-                break;
-            }
-            #[expect(clippy::cast_precision_loss, reason = "a share")]
-            observe(spent.max(round as f64 / self.samples as f64).min(1.0));
+        loop {
             for (index, work) in Work::ALL.into_iter().enumerate() {
                 samples[index].push(rows.run(&mut timer, work)?);
             }
+            let report = self.report(gl, &rows, &samples, &right);
+            let spent = start.elapsed().as_secs_f64() / budget.as_secs_f64().max(1e-9);
+            #[expect(clippy::cast_precision_loss, reason = "a share")]
+            let done = spent.max(samples[0].len() as f64 / self.samples as f64).min(1.0);
+            observe(&report, done)?;
+            if done >= 1.0 {
+                return Ok(report);
+            }
         }
+    }
+
+    fn report(
+        &self,
+        gl: &Gl,
+        rows: &Rows<'_>,
+        samples: &[Vec<Sample>],
+        right: &[Option<bool>],
+    ) -> PictureReport {
         let software = gl.info().software;
         let mut found: Vec<PictureRow> = Vec::new();
         for (index, work) in Work::ALL.into_iter().enumerate() {
-            found.extend(row(work, &samples[index], software, right[index], &rows));
+            found.extend(row(work, &samples[index], software, right[index], rows));
         }
-        let points = found.first().map(|row| row.statistics.median_ms).filter(|&unit| unit > 0.0);
+        // A wrong unit gives no ratios.
+        let unit = found.first().filter(|row| row.right == Some(true)).map(|row| row.statistics.median_ms);
+        let points = unit.filter(|&unit| unit > 0.0);
         for row in found.iter_mut().filter(|row| row.name != Work::Photons.name()) {
             row.point_passes = points.map(|unit| row.statistics.median_ms / unit);
         }
-        Ok(PictureReport {
+        PictureReport {
             program: env!("CARGO_PKG_VERSION").to_owned(),
             device: Device::of(gl.info()),
             suite: self.clone(),
@@ -137,7 +158,7 @@ impl PictureSuite {
             radii: rows.radii(),
             targets: self.targets(&found),
             rows: found,
-        })
+        }
     }
 
     fn targets(&self, rows: &[PictureRow]) -> Vec<Target> {

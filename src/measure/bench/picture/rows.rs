@@ -8,8 +8,8 @@ use crate::error::{Error, Result};
 use crate::gl::{Gl, Sample, Timer};
 use crate::image::Image;
 use crate::measure::PointPass;
-use crate::photon::{Emission, PhotonPoint, TraceSettings, trace_in_batches};
-use crate::reference;
+use crate::photon::{Emission, Ends, PhotonPoint, TraceSettings, trace_in_batches};
+use crate::reference::{self, Shown};
 use crate::render::{Renderer, Stages};
 use crate::scene::Scene;
 use crate::settings::{PictureSettings, RadiusChoice, Search, Settings};
@@ -17,6 +17,10 @@ use crate::view::View;
 
 /// The fixed radius with the least RMSE in the glass box (`varikernel figures`), in pixels.
 const BEST_FIXED: u32 = 2;
+/// By how much gathered light may differ from the definition's, as a share of it: a photon on a border counts in either pixel.
+const GATHERED: f64 = 2e-3;
+/// Pixels at which the definition, which is slow, gathers too.
+const SAMPLED: u32 = 61;
 /// What a splat may lose or gain of its photons' power, as a share.
 const ENERGY: f64 = 1e-4;
 
@@ -64,6 +68,9 @@ pub(super) struct Rows<'a> {
     settings: PictureSettings,
     points: PointPass,
     stages: Stages,
+    /// What is drawn, for the definitions.
+    seen: Vec<PhotonPoint>,
+    shown: Shown,
     /// Of the two splats.
     fragments: [f64; 2],
     pub(super) drawn: u64,
@@ -85,8 +92,11 @@ impl<'a> Rows<'a> {
         seen.truncate(photons as usize);
         let points = PointPass::new(gl, &view)?;
         let stages = Renderer::with_photons(gl, scene, &settings, &seen)?.into_stages(&settings)?;
-        let drawn = seen.len() as u64;
-        Ok(Self { scene, trace, settings, points, stages, fragments: [0.0; 2], drawn, contributing: 0 })
+        let surfaces = stages.surfaces();
+        let (position, normal) = (surfaces.read_position()?, surfaces.read_normal()?);
+        let shown = Shown { view, position, normal };
+        let (fragments, drawn) = ([0.0; 2], seen.len() as u64);
+        Ok(Self { scene, trace, settings, points, stages, seen, shown, fragments, drawn, contributing: 0 })
     }
 
     /// n, MR and the fixed radius.
@@ -114,16 +124,16 @@ impl<'a> Rows<'a> {
         result.map(|((), sample)| sample)
     }
 
-    /// Runs a row untimed, after all rows before it. Whether its answer is right; nothing if there is no other to hold it against.
+    /// Runs a row untimed, after all rows before it. Whether its answer is right.
     pub(super) fn warm_up(&mut self, timer: &mut Timer, work: Work) -> Result<Option<bool>> {
         let total = |counts: &Image<f32>| counts.values().iter().map(|&count| f64::from(count)).sum::<f64>();
-        if !matches!(work, Work::SplatVariable | Work::SplatFixed) {
+        if matches!(work, Work::Points | Work::Density | Work::Radius) {
             self.run(timer, work)?;
         }
         Ok(match work {
             Work::Points => Some((total(&self.points.read()?) - self.drawn_as_f64()).abs() <= self.strays()),
             Work::Density => {
-                let (counts, points) = (self.stages.read_counts()?, self.points.read()?);
+                let counts = self.stages.read_counts()?;
                 #[expect(
                     clippy::cast_possible_truncation,
                     clippy::cast_sign_loss,
@@ -131,10 +141,11 @@ impl<'a> Rows<'a> {
                 )]
                 let contributing = total(&counts) as u64;
                 self.contributing = contributing;
-                // Only photons that are there are counted, and most of them are.
-                let pairs = counts.values().iter().zip(points.values());
-                let more: f64 = pairs.map(|(count, points)| f64::from((count - points).max(0.0))).sum();
-                Some(more <= self.strays() && contributing > self.drawn / 2)
+                let expected = reference::photon_density(&self.shown, &self.seen);
+                let pairs = counts.values().iter().zip(expected.values());
+                let apart: f64 = pairs.map(|(&count, &all)| (f64::from(count) - f64::from(all)).abs()).sum();
+                // Those that f32 puts on the other side of a border, or of a surface's edge.
+                Some(apart <= 4.0 + 1e-3 * self.drawn_as_f64() && contributing > 0)
             }
             Work::Radius => {
                 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "counts")]
@@ -145,8 +156,46 @@ impl<'a> Rows<'a> {
             }
             Work::SplatVariable => self.is_whole(RadiusChoice::Variable, 0)?,
             Work::SplatFixed => self.is_whole(RadiusChoice::Fixed(BEST_FIXED), 1)?,
-            Work::Gather | Work::Photons => None,
+            Work::Gather => Some(self.is_gathered()?),
+            Work::Photons => Some(self.is_told()?),
         })
+    }
+
+    /// Whether some pixels gather what the definition says.
+    fn is_gathered(&mut self) -> Result<bool> {
+        let irradiance = self.stages.gather()?.read()?;
+        let radii = self.stages.read_radii()?;
+        let power = reference::photon_power(&self.shown, &self.seen);
+        let density = reference::photon_density(&self.shown, &self.seen);
+        let UVec2 { x: width, y: height } = self.settings.size;
+        // An odd step does not stay in one column.
+        let step = (width * height / SAMPLED) | 1;
+        let (mut apart, mut all) = (0.0, 0.0);
+        for index in (0..width * height).step_by(step as usize) {
+            let pixel = UVec2::new(index % width, index / width);
+            let radius = radii.at(pixel.x, pixel.y);
+            let (expected, _) =
+                reference::gather_at(&self.shown, pixel, &power, &density, radius, self.settings.kernel);
+            for (found, expected) in irradiance.at(pixel.x, pixel.y).into_iter().zip(expected) {
+                apart += (f64::from(found) - expected).abs();
+                all += expected;
+            }
+        }
+        Ok(apart <= GATHERED * all && all > 0.0)
+    }
+
+    /// Whether every photon is followed to an end, and all landings that are tallied are handed out.
+    fn is_told(&self) -> Result<bool> {
+        let mut landings = 0;
+        let emission = Emission::new(self.scene, &self.trace)?;
+        let tally = trace_in_batches(self.scene, &emission, |photons, _| {
+            landings += photons.len() as u64;
+            Ok::<(), Error>(())
+        })?;
+        let Ends { left, absorbed, bounces_used, given_up } = tally.ends;
+        let ended = left + absorbed + bounces_used + given_up;
+        let asked = u64::from(self.trace.photons);
+        Ok(tally.photons == asked && ended == asked && tally.total() == landings && landings > 0)
     }
 
     /// Whether a splat holds its photons' power.
