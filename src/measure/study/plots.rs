@@ -118,7 +118,7 @@ pub(super) fn density(rows: &[DensityRow], shape: Shape) -> String {
         Series { name: name.to_owned(), colour, style, points }
     };
     Chart {
-        title: format!("A {}", shape.name()),
+        title: format!("Estimates of a density: {}", shape.name()),
         x: axis("mean radius (pixels)", Scale::Logarithmic),
         y: axis("RMSE (parts of the mean density)", Scale::Logarithmic),
         series: vec![
