@@ -186,6 +186,9 @@ fn limits(gl: &Gl) -> Result<Vec<Row>> {
             row.id = format!("limit/{}{}", number.name(), if past == 0 { "" } else { "/and-1" });
             if past == 0 {
                 row.promises = vec!["accepted-is-exact".to_owned(), promise.to_owned()];
+                if number == Number::U32Scan {
+                    row.promises.push("default-is-exact".to_owned());
+                }
                 let is_accepted = row.decision == Some(Decision::Accepted);
                 row.verdict = Verdict::kept_if(is_accepted && row.wrong == Some(0));
                 rows.push(row);
@@ -205,7 +208,7 @@ fn is_real(refused: &Row) -> Row {
     Row {
         wrong: refused.wrong,
         of: refused.of,
-        note: "wrong, as it should be".to_owned(),
+        note: "some have to be wrong".to_owned(),
         ..Row::new(format!("{}/is-wrong", refused.id), &["limits-are-real"], Verdict::kept_if(is_wrong))
     }
 }

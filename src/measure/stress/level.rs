@@ -16,7 +16,7 @@ pub fn question(density: f64) -> Search {
     Search { min_photons, max_radius: MAX_RADIUS, edges: Edges::Scale, order: Order::Binary }
 }
 
-/// The side past which a row takes gigabytes.
+/// The largest side: a row of it takes 3.6 GB.
 const LARGEST: u32 = 8192;
 
 /// Maps of one side.
