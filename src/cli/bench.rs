@@ -28,8 +28,8 @@ use super::Outcome;
 /// texel once. A method whose answer is wrong gets no rank.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
-    /// Time a fixed set of cases, and judge its targets. Of the choices below, `fast` takes --sizes, --build-sizes and
-    /// --rivals, `picture` one size and --photons.
+    /// Time a fixed set of cases, and judge its targets. Of the choices below, `fast` takes --sizes, --build-sizes,
+    /// --rivals and --protocol, `picture` one size and --photons.
     #[arg(long, value_enum, conflicts_with_all = FIXED_BY_SUITE)]
     suite: Option<SuiteName>,
 
@@ -103,7 +103,7 @@ pub(crate) struct Args {
     #[arg(long, value_parser = humantime::parse_duration)]
     budget: Option<Duration>,
 
-    /// Write every sample to this file, anew after each case.
+    /// Write every sample to this file, anew after each case, or after each round of --suite picture.
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
 
@@ -166,7 +166,7 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     }
     if args.photons.is_some() {
         bail!(
-            "--photons is not possible with --suite fast\nhelp: it takes --sizes, --build-sizes and --rivals"
+            "--photons is not possible with --suite fast\nhelp: it takes --sizes, --build-sizes, --rivals and --protocol"
         );
     }
     // What can be refused without timing is refused first.

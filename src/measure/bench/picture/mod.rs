@@ -114,7 +114,7 @@ impl PictureSuite {
         let mut samples: Vec<Vec<Sample>> = vec![Vec::new(); Work::ALL.len()];
         let mut right = vec![None; Work::ALL.len()];
         for (index, work) in Work::ALL.into_iter().enumerate() {
-            right[index] = rows.warm_up(&mut timer, work)?;
+            right[index] = Some(rows.warm_up(&mut timer, work)?);
         }
         loop {
             for (index, work) in Work::ALL.into_iter().enumerate() {

@@ -125,13 +125,13 @@ impl<'a> Rows<'a> {
     }
 
     /// Runs a row untimed, after all rows before it. Whether its answer is right.
-    pub(super) fn warm_up(&mut self, timer: &mut Timer, work: Work) -> Result<Option<bool>> {
+    pub(super) fn warm_up(&mut self, timer: &mut Timer, work: Work) -> Result<bool> {
         let total = |counts: &Image<f32>| counts.values().iter().map(|&count| f64::from(count)).sum::<f64>();
         if matches!(work, Work::Points | Work::Density | Work::Radius) {
             self.run(timer, work)?;
         }
         Ok(match work {
-            Work::Points => Some((total(&self.points.read()?) - self.drawn_as_f64()).abs() <= self.strays()),
+            Work::Points => (total(&self.points.read()?) - self.drawn_as_f64()).abs() <= self.strays(),
             Work::Density => {
                 let counts = self.stages.read_counts()?;
                 #[expect(
@@ -142,22 +142,19 @@ impl<'a> Rows<'a> {
                 let contributing = total(&counts) as u64;
                 self.contributing = contributing;
                 let expected = reference::photon_density(&self.shown, &self.seen);
-                let pairs = counts.values().iter().zip(expected.values());
-                let apart: f64 = pairs.map(|(&count, &all)| (f64::from(count) - f64::from(all)).abs()).sum();
-                // Those that f32 puts on the other side of a border, or of a surface's edge.
-                Some(apart <= 4.0 + 1e-3 * self.drawn_as_f64() && contributing > 0)
+                contributing > 0 && are_counts_right(&counts, &expected, self.drawn_as_f64())
             }
             Work::Radius => {
                 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "counts")]
                 let counts = self.stages.read_counts()?.map(|count| count as u32);
                 let (min_photons, max_radius) = (self.settings.min_photons, self.settings.max_radius);
                 let search = Search { min_photons, max_radius, ..Settings::default().search };
-                Some(self.stages.read_radii()? == reference::radius_by_table(&counts, search).radius)
+                self.stages.read_radii()? == reference::radius_by_table(&counts, search).radius
             }
             Work::SplatVariable => self.is_whole(RadiusChoice::Variable, 0)?,
             Work::SplatFixed => self.is_whole(RadiusChoice::Fixed(BEST_FIXED), 1)?,
-            Work::Gather => Some(self.is_gathered()?),
-            Work::Photons => Some(self.is_told()?),
+            Work::Gather => self.is_gathered()?,
+            Work::Photons => self.is_told()?,
         })
     }
 
@@ -170,18 +167,15 @@ impl<'a> Rows<'a> {
         let UVec2 { x: width, y: height } = self.settings.size;
         // An odd step does not stay in one column.
         let step = (width * height / SAMPLED) | 1;
-        let (mut apart, mut all) = (0.0, 0.0);
+        let mut pairs = Vec::new();
         for index in (0..width * height).step_by(step as usize) {
             let pixel = UVec2::new(index % width, index / width);
             let radius = radii.at(pixel.x, pixel.y);
             let (expected, _) =
                 reference::gather_at(&self.shown, pixel, &power, &density, radius, self.settings.kernel);
-            for (found, expected) in irradiance.at(pixel.x, pixel.y).into_iter().zip(expected) {
-                apart += (f64::from(found) - expected).abs();
-                all += expected;
-            }
+            pairs.extend(irradiance.at(pixel.x, pixel.y).into_iter().zip(expected));
         }
-        Ok(apart <= GATHERED * all && all > 0.0)
+        Ok(is_light_right(&pairs))
     }
 
     /// Whether every photon is followed to an end, and all landings that are tallied are handed out.
@@ -199,11 +193,11 @@ impl<'a> Rows<'a> {
     }
 
     /// Whether a splat holds its photons' power.
-    fn is_whole(&mut self, radius: RadiusChoice, index: usize) -> Result<Option<bool>> {
+    fn is_whole(&mut self, radius: RadiusChoice, index: usize) -> Result<bool> {
         let irradiance = self.stages.splat(radius)?.read()?;
         let account = self.stages.account(&irradiance)?;
         self.fragments[index] = account.fragments;
-        Ok(Some(account.energy_error() < ENERGY))
+        Ok(account.energy_error() < ENERGY)
     }
 
     #[expect(clippy::cast_precision_loss, reason = "below 2^53")]
@@ -211,7 +205,7 @@ impl<'a> Rows<'a> {
         self.drawn as f64
     }
 
-    /// How many photons may get into the pixel beside theirs: rasterisers place points to 1/256 of a pixel.
+    /// How many photons may get over the picture's edge: rasterisers place points to 1/256 of a pixel.
     fn strays(&self) -> f64 {
         2.0 + 0.01 * self.drawn_as_f64()
     }
@@ -227,5 +221,47 @@ impl<'a> Rows<'a> {
     #[expect(clippy::cast_precision_loss, reason = "below 2^53")]
     pub(super) fn contributing_or_one(&self) -> f64 {
         self.contributing.max(1) as f64
+    }
+}
+
+/// Whether as many photons are counted in each pixel as should be, but for those that f32 puts on the other side of a border, or
+/// of a surface's edge.
+fn are_counts_right(counts: &Image<f32>, expected: &Image<u32>, drawn: f64) -> bool {
+    let pairs = counts.values().iter().zip(expected.values());
+    let apart: f64 = pairs.map(|(&count, &all)| (f64::from(count) - f64::from(all)).abs()).sum();
+    apart <= 4.0 + 1e-3 * drawn
+}
+
+/// Whether some light is found and it is what is expected.
+fn is_light_right(pairs: &[(f32, f64)]) -> bool {
+    let apart: f64 = pairs.iter().map(|&(found, expected)| (f64::from(found) - expected).abs()).sum();
+    let all: f64 = pairs.iter().map(|&(_, expected)| expected).sum();
+    apart <= GATHERED * all && all > 0.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_few_strays_are_right_and_moved_photons_are_not() {
+        let expected = Image::filled(UVec2::splat(10), 100);
+        let counts = |moved: f32| {
+            let mut counts = Image::filled(UVec2::splat(10), 100.0);
+            counts.set(2, 3, 100.0 - moved);
+            counts.set(3, 3, 100.0 + moved);
+            counts
+        };
+        // 14 of 10,000 may be apart, and each that moves is so in two pixels.
+        assert!(are_counts_right(&counts(7.0), &expected, 1e4));
+        assert!(!are_counts_right(&counts(8.0), &expected, 1e4));
+    }
+
+    #[test]
+    fn light_that_is_off_or_missing_is_wrong() {
+        assert!(is_light_right(&[(1.0, 1.001), (3.0, 3.0)]));
+        assert!(!is_light_right(&[(1.0, 1.01), (3.0, 3.0)]));
+        assert!(!is_light_right(&[(0.0, 0.0), (0.0, 0.0)]), "nothing was compared");
+        assert!(!is_light_right(&[(f32::NAN, 1.0), (3.0, 3.0)]));
     }
 }
