@@ -128,5 +128,5 @@ fn primitives(scene: &Scene) -> Image<[f32; 4]> {
 }
 
 pub(crate) fn source() -> ShaderSource {
-    ShaderSource::new(LABEL).file(glsl!("shadow_map.frag"))
+    ShaderSource::new(LABEL).file(glsl!("shadow_map/between.glsl")).file(glsl!("shadow_map/light.frag"))
 }
