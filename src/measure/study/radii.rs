@@ -65,7 +65,7 @@ impl RadiusStudy {
     pub fn usual() -> Self {
         let middle = Question { side: 256, min_photons: 25, max_radius: 32 };
         let mut questions = vec![middle];
-        questions.extend([10, 1000].map(|min_photons| Question { min_photons, ..middle }));
+        questions.extend([10, 250].map(|min_photons| Question { min_photons, ..middle }));
         questions.extend([8, 128].map(|max_radius| Question { max_radius, ..middle }));
         questions.extend([64, 512].map(|side| Question { side, ..middle }));
         Self { questions, sample_ms: 40 }
@@ -82,7 +82,7 @@ impl RadiusStudy {
     pub fn full() -> Self {
         let mut questions = Self::usual().questions;
         for side in [64, 256, 512, 1024] {
-            for min_photons in [10, 25, 1000] {
+            for min_photons in [10, 25, 250, 1000] {
                 for max_radius in [8, 32, 128] {
                     let question = Question { side, min_photons, max_radius };
                     if !questions.contains(&question) {
@@ -438,6 +438,6 @@ mod tests {
             ];
             assert_eq!(same.iter().filter(|same| !**same).count(), 1, "{question:?}");
         }
-        assert_eq!(RadiusStudy::full().questions.len(), 4 * 3 * 3);
+        assert_eq!(RadiusStudy::full().questions.len(), 4 * 4 * 3);
     }
 }

@@ -63,7 +63,7 @@ impl PictureStudy {
     pub fn usual() -> Self {
         Self {
             scenes: Scene::shipped_names().map(str::to_owned).collect(),
-            size: [112; 2],
+            size: [96; 2],
             photons: vec![6_000, 24_000, 96_000],
             min_photons: vec![100, 200, 400],
             max_radius: 64,
