@@ -85,7 +85,7 @@ pub(crate) struct Args {
     sat_samples: Vec<SatSamples>,
 
     /// Numbers in which summed-area tables are kept; each is left out where it is not proved exact (u16 where a box could
-    /// hold 2^16 photons, f16 past 2^11 in all, f32-minus-mean always).
+    /// hold 2^16 photons, f16 past 2^11 in all, f32-minus-mean and f32-minus-whole-mean always).
     #[arg(long, value_enum, value_delimiter = ',', default_value = "u32")]
     storage: Vec<Storage>,
 

@@ -13,7 +13,6 @@ pub(crate) enum Uniform {
     Int(i32),
     Uint(u32),
     IntPair(glam::IVec2),
-    #[cfg(feature = "render")]
     Float(f32),
     #[cfg(feature = "render")]
     FloatTriple(glam::Vec3),
@@ -39,7 +38,6 @@ impl From<glam::IVec2> for Uniform {
     }
 }
 
-#[cfg(feature = "render")]
 impl From<f32> for Uniform {
     fn from(value: f32) -> Self {
         Self::Float(value)
@@ -143,7 +141,6 @@ impl Program {
                 (glow::INT, Uniform::Int(value)) => glow.uniform_1_i32(location, value),
                 (glow::UNSIGNED_INT, Uniform::Uint(value)) => glow.uniform_1_u32(location, value),
                 (glow::INT_VEC2, Uniform::IntPair(value)) => glow.uniform_2_i32(location, value.x, value.y),
-                #[cfg(feature = "render")]
                 (glow::FLOAT, Uniform::Float(value)) => glow.uniform_1_f32(location, value),
                 #[cfg(feature = "render")]
                 (glow::FLOAT_VEC3, Uniform::FloatTriple(value)) => {

@@ -41,7 +41,7 @@ pub struct SceneReference {
 /// Errors are the same bits on each run, whatever the number of threads; times are not.
 ///
 /// # Errors
-/// [`Error::Setting`](crate::Error::Setting) outside of a setting's range; those of [`Renderer`] and of `observe`.
+/// [`Error::Setting`](crate::Error::Setting) outside of a setting's range; those of [`Renderer`](crate::render::Renderer) and of `observe`.
 pub fn run(
     gl: &Gl,
     study: &PictureStudy,
