@@ -10,6 +10,7 @@ mod radius;
 mod real_map;
 mod render;
 mod reproduce;
+mod share_bar;
 mod stress;
 mod study;
 mod synth;

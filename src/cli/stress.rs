@@ -8,15 +8,18 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context as _, Result};
-use indicatif::{ProgressBar, ProgressStyle};
 use varikernel::context::{self, DeviceChoice};
 use varikernel::image::check_writable;
 use varikernel::measure::stress::{self, Extent, Report, StressSettings, Verdict};
 
+use super::share_bar::ShareBar;
 use super::{Outcome, output};
 
 /// How often a renderer computes the same maps, to see that it always gives the same bits; and in a quick run.
 const TIMES: [u32; 2] = [100, 20];
+
+/// The part of the time that everything on one device takes.
+const MAPS_SHARE: f64 = 0.9;
 
 /// Put numbers under stress: where sums in each of them break, and whether the promises about exactness hold.
 ///
@@ -75,12 +78,10 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
         _ => Extent::Usual,
     };
     let settings = StressSettings { extent, planted: args.plant_fault };
-    let bar = progress_bar();
+    let bar = ShareBar::new();
     let mut saved = Instant::now();
     let mut report = stress::run(&gl, settings, &mut |report, progress| {
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of 1000")]
-        bar.set_position((900.0 * progress.done) as u64);
-        bar.set_message(progress.row);
+        bar.show(MAPS_SHARE * progress.done, progress.row);
         if saved.elapsed() > Duration::from_secs(5) {
             save(report)?;
             saved = Instant::now();
@@ -88,8 +89,10 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
         Ok(())
     })?;
     save(&report)?;
-    report.compare_renderers(renderers::all(&gl, TIMES[usize::from(args.quick)], &bar)?);
-    bar.finish_and_clear();
+    report.compare_renderers(renderers::all(&gl, TIMES[usize::from(args.quick)], &mut |name, done| {
+        bar.show(MAPS_SHARE + (1.0 - MAPS_SHARE) * done, format!("the same maps: {name}"));
+    })?);
+    bar.finish();
     save(&report)?;
 
     let judged = report.judge();
@@ -106,10 +109,4 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     let is_kept = judged.iter().all(|judged| judged.verdict == Verdict::Kept)
         && report.rows.iter().all(|row| row.verdict != Verdict::Broken);
     Ok(if is_kept { Outcome::Done } else { Outcome::Differs })
-}
-
-fn progress_bar() -> ProgressBar {
-    let style = ProgressStyle::with_template("{wide_bar} {percent} %, {eta} left\n{msg}");
-    let bar = ProgressBar::new(1000);
-    bar.with_style(style.unwrap_or_else(|error| unreachable!("a fixed template: {error}")))
 }

@@ -6,11 +6,11 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context as _, Result};
-use indicatif::{ProgressBar, ProgressStyle};
 use varikernel::context::{self, DeviceChoice};
 use varikernel::image::{check_writable, write_atomically};
 use varikernel::measure::study::{self, Study, StudySettings};
 
+use super::share_bar::ShareBar;
 use super::{Outcome, output, real_map};
 
 /// What was found so far is saved as often as this.
@@ -70,11 +70,11 @@ impl Extent {
 
 pub(crate) fn run(args: &Args) -> Result<Outcome> {
     let settings = args.extent.settings();
+    let files = Files { folder: &args.output };
+    let earlier = if args.resume { Some(files.load()?) } else { None };
     fs::create_dir_all(&args.output)
         .with_context(|| format!("can't make the folder {}", args.output.display()))?;
-    let files = Files { folder: &args.output };
     files.check()?;
-    let earlier = if args.resume { Some(files.load()?) } else { None };
     let gl = context::open(&args.device)?;
     if let Some((earlier, path)) = &earlier {
         earlier.check_resumable(path, &Study::begin(&gl, &settings))?;
@@ -82,19 +82,17 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     let earlier = earlier.map(|(study, _)| study);
 
     let real = real_map::read()?;
-    let bar = progress_bar();
+    let bar = ShareBar::new();
     let mut saved = Instant::now();
     let study = study::run(&gl, &settings, (real_map::NAME, &real), earlier, &mut |study, progress| {
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of 1000")]
-        bar.set_position((1000.0 * progress.done) as u64);
-        bar.set_message(progress.what.clone());
+        bar.show(progress.done, progress.what.clone());
         if saved.elapsed() > SAVE_EVERY {
             study.save(&files.partial())?;
             saved = Instant::now();
         }
         Ok(())
     })?;
-    bar.finish_and_clear();
+    bar.finish();
     files.write(&study)?;
     if args.json {
         output::print_json(&study.with_summary())?;
@@ -140,12 +138,6 @@ impl Files<'_> {
             _ => Ok(()),
         }
     }
-}
-
-fn progress_bar() -> ProgressBar {
-    let style = ProgressStyle::with_template("{wide_bar} {percent} %, {eta} left\n{msg}");
-    let bar = ProgressBar::new(1000);
-    bar.with_style(style.unwrap_or_else(|error| unreachable!("a fixed template: {error}")))
 }
 
 /// What to choose, in words; the rest is in the files.

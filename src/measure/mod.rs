@@ -7,6 +7,8 @@ mod chart;
 #[cfg(feature = "bench")]
 mod confidence;
 mod difference;
+#[cfg(feature = "bench")]
+mod fingerprint;
 #[cfg(feature = "render")]
 mod picture;
 #[cfg(feature = "render")]

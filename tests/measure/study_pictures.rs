@@ -2,8 +2,7 @@
 
 use varikernel::measure::PictureError;
 use varikernel::measure::study::pictures::{
-    EqualPhotons, Metric, PictureRow, PictureStudy, PictureStudyResult, Width, Winner, equal_photons,
-    equal_time, run,
+    EqualPhotons, Found, Metric, PictureRow, PictureStudy, Width, Winner, equal_photons, equal_time, run,
 };
 use varikernel::settings::Kernel;
 
@@ -188,7 +187,7 @@ fn the_same_errors_twice_and_when_gone_on_with() {
 
     // Every third row is lost, and the file has been read again.
     let text = serde_json::to_string(&first).unwrap();
-    let read: PictureStudyResult = serde_json::from_str(&text).unwrap();
+    let read: Found = serde_json::from_str(&text).unwrap();
     assert_eq!(read, first, "to the last bit");
     let kept: Vec<PictureRow> =
         read.rows.into_iter().enumerate().filter(|(place, _)| place % 3 != 0).map(|(_, row)| row).collect();
@@ -196,12 +195,9 @@ fn the_same_errors_twice_and_when_gone_on_with() {
     assert_eq!(without_times(&second.rows), without_times(&first.rows));
     assert_eq!(second.references, first.references);
     assert!(kept.iter().all(|row| second.rows.contains(row)), "what was there is not drawn again");
-    let errors = |result: &PictureStudyResult| {
-        result
-            .equal_photons
-            .iter()
-            .map(|one| (one.fixed, one.best.ratio, one.best.winner))
-            .collect::<Vec<_>>()
+    let errors = |result: &Found| {
+        let compared = equal_photons(&result.rows).into_iter();
+        compared.map(|one| (one.fixed, one.best.ratio, one.best.winner)).collect::<Vec<_>>()
     };
     assert_eq!(errors(&second), errors(&first));
 }
@@ -210,8 +206,9 @@ fn the_same_errors_twice_and_when_gone_on_with() {
 #[test]
 fn a_radius_that_is_too_large_loses() {
     let result = run(&egl(), &small(), Vec::new(), &mut |_, _| Ok(())).unwrap();
-    assert_eq!(result.equal_photons.len(), Metric::ALL.len());
-    for one in &result.equal_photons {
+    let compared = equal_photons(&result.rows);
+    assert_eq!(compared.len(), Metric::ALL.len());
+    for one in &compared {
         let best = one.fixed.width.radius().unwrap();
         assert!(!one.fixed.at_end && best < 9, "{one:?}");
         let error = |radius| {

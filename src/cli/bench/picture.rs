@@ -7,7 +7,7 @@ use std::time::Duration;
 use anyhow::{Result, bail};
 use varikernel::context;
 use varikernel::image::{check_writable, write_atomically};
-use varikernel::measure::bench::{PictureReport, PictureRow, PictureSuite};
+use varikernel::measure::bench::{PictureReport, PictureSuite};
 use varikernel::render::Progress;
 
 use super::table::{align_right, device_facts, new_table, three_digits};
@@ -80,7 +80,7 @@ fn print(report: &PictureReport) -> Result<()> {
             number(row.fragments_per_photon),
             number(row.ns_per_fragment),
             row.statistics.count.to_string(),
-            answer(row).to_owned(),
+            if row.right { "right" } else { "WRONG" }.to_owned(),
         ]);
     }
     output::print(&table.trim_fmt())?;
@@ -88,12 +88,4 @@ fn print(report: &PictureReport) -> Result<()> {
         "\nms: median time. point passes: ms over those of the photons drawn as points.\n\
          fragments: for each contributing photon, and their time.",
     )
-}
-
-fn answer(row: &PictureRow) -> &'static str {
-    match row.right {
-        Some(true) => "right",
-        Some(false) => "WRONG",
-        None => "",
-    }
 }

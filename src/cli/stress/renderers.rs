@@ -4,22 +4,28 @@ use std::env;
 use std::process::Command;
 
 use anyhow::Result;
-use indicatif::ProgressBar;
 use varikernel::context::{self, DeviceChoice};
 use varikernel::error::Error;
 use varikernel::gl::Gl;
 use varikernel::measure::stress::{Bits, Found, Renderer};
 
+/// Numbers of llvmpipe's threads.
+const THREADS: [&str; 3] = ["1", "2", "8"];
+
 /// The same maps here, on every other device, on Mesa's other software renderer, and with other numbers of threads.
-pub(super) fn all(gl: &Gl, times: u32, bar: &ProgressBar) -> Result<Vec<Renderer>> {
-    let tell = |name: &str| {
-        bar.inc(10);
-        bar.set_message(format!("the same maps: {name}"));
+/// `show` is told which is next, and the done share.
+pub(super) fn all(gl: &Gl, times: u32, show: &mut dyn FnMut(&str, f64)) -> Result<Vec<Renderer>> {
+    let (candidates, missing) = context::candidates();
+    #[expect(clippy::cast_precision_loss, reason = "a few renderers")]
+    let count = (1 + candidates.len() + 1 + THREADS.len()) as f64;
+    let mut told = 0.0;
+    let mut tell = |name: &str| {
+        show(name, told / count);
+        told += 1.0;
     };
     tell("again");
     let again = Found::Ran(Bits::of(gl, times)?);
     let mut all = vec![Renderer { name: "again".to_owned(), found: again, of_threads: true }];
-    let (candidates, missing) = context::candidates();
     for candidate in candidates {
         let name = candidate.choice.to_string();
         tell(&name);
@@ -32,7 +38,7 @@ pub(super) fn all(gl: &Gl, times: u32, bar: &ProgressBar) -> Result<Vec<Renderer
     tell("softpipe");
     let softpipe = in_child("softpipe", &[("GALLIUM_DRIVER", "softpipe")], 1);
     all.push(Renderer { name: "softpipe".to_owned(), found: softpipe, of_threads: false });
-    for threads in ["1", "2", "8"] {
+    for threads in THREADS {
         let name = format!("threads-{threads}");
         tell(&name);
         // The variable has no say on hardware, and llvmpipe is asked for by name.

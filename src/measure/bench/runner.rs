@@ -10,6 +10,7 @@ use super::workbench::Workbench;
 use crate::error::{Error, Result};
 use crate::gl::{Gl, TextureFormat, Timer};
 use crate::measure::Unit;
+use crate::measure::fingerprint::fingerprint;
 use crate::pipeline;
 
 /// How far a run is.
@@ -81,17 +82,12 @@ pub fn empty_report(gl: &Gl, settings: &BenchSettings, maps: &[MapSource]) -> Re
     }
 }
 
-/// FNV-1a, 64 bits, of every shader.
+/// Of every shader that is timed.
 fn shader_hash(settings: &BenchSettings) -> String {
     let pipelines = if settings.suite.is_some() { fast::pipelines(settings) } else { settings.pipelines() };
     let timed = pipelines.iter().flat_map(|of| pipeline::shader_sources(TextureFormat::R32Uint, of));
-    let mut hash = 0xcbf2_9ce4_8422_2325_u64;
-    for source in Unit::ALL.map(Unit::source).into_iter().chain(timed) {
-        for byte in source.fragment().bytes() {
-            hash = (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
-        }
-    }
-    format!("{hash:016x}")
+    let sources = Unit::ALL.map(Unit::source).into_iter().chain(timed);
+    fingerprint(sources.flat_map(|source| source.fragment().into_bytes()))
 }
 
 struct Runner<'a> {

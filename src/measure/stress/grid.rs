@@ -57,11 +57,10 @@ pub(super) fn rows(
         each(row, 0.0)?;
     }
     for level in &levels {
-        let mut scanline: Option<Scanline> = None;
         for &density in &level.densities {
             let search = question(density);
             let mut bench = Bench::default();
-            let reference = scanline.insert(Scanline::new(UVec2::splat(level.side), search, Cores::All));
+            let mut reference = Scanline::new(UVec2::splat(level.side), search, Cores::All);
             for &shape in level.shapes {
                 let counts = shape.map(level.side, density, SEED);
                 let exact = &reference.run(&counts).radius;
@@ -109,19 +108,15 @@ impl Subject<'_> {
             _ => CountBounds::of(taken, settings.search),
         };
         let density = DensityMap::upload(gl, taken, bounds)?;
-        let plan = exactness::plan(&settings, size, bounds);
-        let waived = Settings { exactness: Exactness::Waived, ..settings };
-        let (decision, found) = match &plan {
-            Ok(_) => {
-                let radii = bench.pipeline(gl, size, settings)?.render(&density)?.read()?;
-                (Decision::Accepted, radii)
-            }
-            Err(Error::Inexact { .. }) => {
-                let radii = bench.pipeline(gl, size, waived)?.render(&density)?.read()?;
-                (Decision::Refused, radii)
-            }
-            Err(_) => return Err(plan.err().unwrap_or_else(|| unreachable!("just matched"))),
+        let plan = match exactness::plan(&settings, size, bounds) {
+            Err(error) if !matches!(error, Error::Inexact { .. }) => return Err(error),
+            plan => plan,
         };
+        let (decision, computed) = match plan {
+            Ok(_) => (Decision::Accepted, settings),
+            Err(_) => (Decision::Refused, Settings { exactness: Exactness::Waived, ..settings }),
+        };
+        let found = bench.pipeline(gl, size, computed)?.render(&density)?.read()?;
         let difference = Difference::between(&found, exact)?;
         let total = total_photons(counts);
         let (promises, verdict, note) = match plan {

@@ -1,4 +1,6 @@
 //! Maps that are unkind to sums.
+//!
+//! Unlike `synth`, which draws photon by photon, these draw pixel by pixel: they hold up to 7e10 photons.
 
 use glam::UVec2;
 use rand::{RngExt as _, SeedableRng as _};

@@ -69,8 +69,8 @@ pub struct PictureRow {
     pub fragments_per_photon: Option<f64>,
     /// The median over all fragments.
     pub ns_per_fragment: Option<f64>,
-    /// Whether the answer is right; none in files of versions that did not check all.
-    pub right: Option<bool>,
+    /// Whether the answer is right.
+    pub right: bool,
 }
 
 /// Everything that the suite found.
@@ -112,9 +112,9 @@ impl PictureSuite {
         let mut rows = Rows::new(gl, &scene, UVec2::from_array(self.size), self.photons)?;
         let mut timer = Timer::new(gl)?;
         let mut samples: Vec<Vec<Sample>> = vec![Vec::new(); Work::ALL.len()];
-        let mut right = vec![None; Work::ALL.len()];
-        for (index, work) in Work::ALL.into_iter().enumerate() {
-            right[index] = Some(rows.warm_up(&mut timer, work)?);
+        let mut right = Vec::new();
+        for work in Work::ALL {
+            right.push(rows.warm_up(&mut timer, work)?);
         }
         loop {
             for (index, work) in Work::ALL.into_iter().enumerate() {
@@ -131,20 +131,14 @@ impl PictureSuite {
         }
     }
 
-    fn report(
-        &self,
-        gl: &Gl,
-        rows: &Rows<'_>,
-        samples: &[Vec<Sample>],
-        right: &[Option<bool>],
-    ) -> PictureReport {
+    fn report(&self, gl: &Gl, rows: &Rows<'_>, samples: &[Vec<Sample>], right: &[bool]) -> PictureReport {
         let software = gl.info().software;
         let mut found: Vec<PictureRow> = Vec::new();
         for (index, work) in Work::ALL.into_iter().enumerate() {
             found.extend(row(work, &samples[index], software, right[index], rows));
         }
         // A wrong unit gives no ratios.
-        let unit = found.first().filter(|row| row.right == Some(true)).map(|row| row.statistics.median_ms);
+        let unit = found.first().filter(|row| row.right).map(|row| row.statistics.median_ms);
         let points = unit.filter(|&unit| unit > 0.0);
         for row in found.iter_mut().filter(|row| row.name != Work::Photons.name()) {
             row.point_passes = points.map(|unit| row.statistics.median_ms / unit);
@@ -163,7 +157,7 @@ impl PictureSuite {
 
     fn targets(&self, rows: &[PictureRow]) -> Vec<Target> {
         let map = MapInfo { name: self.scene.clone(), size: self.size, origin: String::new() };
-        let row = |work: Work| rows.iter().find(|row| row.name == work.name() && row.right != Some(false));
+        let row = |work: Work| rows.iter().find(|row| row.name == work.name() && row.right);
         let density = row(Work::Density).and_then(|row| row.point_passes);
         let millions = f64::from(self.photons) / 1e6;
         let photons = row(Work::Photons).map(|row| row.statistics.median_ms / 1e3 / millions);
@@ -187,13 +181,7 @@ impl PictureSuite {
     }
 }
 
-fn row(
-    work: Work,
-    samples: &[Sample],
-    software: bool,
-    right: Option<bool>,
-    rows: &Rows<'_>,
-) -> Option<PictureRow> {
+fn row(work: Work, samples: &[Sample], software: bool, right: bool, rows: &Rows<'_>) -> Option<PictureRow> {
     let milliseconds = |time: Duration| time.as_secs_f64() * 1e3;
     let samples_ms: Vec<f64> = samples.iter().map(|sample| milliseconds(sample.query)).collect();
     let statistics = Statistics::of(&samples_ms)?;

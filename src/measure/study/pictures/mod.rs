@@ -147,19 +147,11 @@ impl PictureStudy {
     }
 }
 
-/// The study with all that it found.
+/// What a study found.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct PictureStudyResult {
-    /// What was asked for.
-    pub study: PictureStudy,
-    /// The renderer's name.
-    pub renderer: String,
+pub struct Found {
     /// What the scenes were compared with.
     pub references: Vec<SceneReference>,
     /// A row for each picture, in the order of scenes, photons, seeds, kernels and widths.
     pub rows: Vec<PictureRow>,
-    /// Variable against fixed radii, for each scene, number of photons, kernel and metric.
-    pub equal_photons: Vec<EqualPhotons>,
-    /// The same over time, for each scene, kernel and metric.
-    pub equal_time: Vec<EqualTime>,
 }

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::metric::Sweep;
 use super::studio::{Compared, Place, Studio};
-use super::{Metric, PictureRow, PictureStudy, PictureStudyResult, Width, equal_photons, equal_time};
+use super::{Found, Metric, PictureRow, PictureStudy, Width};
 use crate::error::Result;
 use crate::gl::Gl;
 use crate::image::Image;
@@ -47,7 +47,7 @@ pub fn run(
     study: &PictureStudy,
     earlier: Vec<PictureRow>,
     observe: &mut dyn FnMut(&[PictureRow], Progress) -> Result<()>,
-) -> Result<PictureStudyResult> {
+) -> Result<Found> {
     study.validate()?;
     let mut run = Run { gl, study, earlier, rows: Vec::new(), done: 0.0 };
     let mut references = Vec::new();
@@ -60,15 +60,7 @@ pub fn run(
             run.sweep(&place, observe)?;
         }
     }
-    let rows = run.rows;
-    Ok(PictureStudyResult {
-        study: study.clone(),
-        renderer: gl.info().renderer.clone(),
-        references,
-        equal_photons: equal_photons(&rows),
-        equal_time: equal_time(&rows),
-        rows,
-    })
+    Ok(Found { references, rows: run.rows })
 }
 
 struct Run<'a> {
