@@ -13,29 +13,34 @@ use glam::{UVec2, Vec4};
 
 use crate::error::{Error, Result};
 use crate::exactness::CountBounds;
-use crate::gl::{
-    Gl, Pass, Program, ShaderSource, StateGuard, Target, Texture, TextureFormat, Vertices, glsl,
-};
+use crate::gl::{Gl, Pass, Program, ShaderSource, StateGuard, Target, Texture, TextureFormat, glsl};
 use crate::image::Image;
 use crate::maps::{DensityMap, PhotonPoints, SurfaceMaps};
 
 const LABEL: &str = "density";
 
 /// Where adding 1 to an f32 stops to count.
-const MOST: f32 = 16_777_216.0;
+const MOST: u64 = 1 << 24;
 
-/// The maps of one size that photons are added to.
+/// Counts photons into maps of one size.
 #[derive(Debug)]
-pub(crate) struct DensityStage {
+pub struct DensityStage {
     gl: Gl,
     program: Program,
     /// Counts, and power with the count again.
     target: Target,
-    drawn: u64,
+    /// The counts, with the number of photons drawn as their bounds.
+    map: DensityMap,
+    /// Photons drawn, and the fullest pixel, when the counts were read last.
+    read: (u64, u64),
 }
 
 impl DensityStage {
-    pub(crate) fn new(gl: &Gl, size: UVec2) -> Result<Self> {
+    /// Allocates and compiles for maps of `size`, still without photons: GL_R32F for counts, GL_RGBA32F for power.
+    ///
+    /// # Errors
+    /// [`Error::TooLarge`]; [`Error::Shader`] if the driver refuses the shader; [`Error::Gl`] when memory runs out.
+    pub fn new(gl: &Gl, size: UVec2) -> Result<Self> {
         let _state = StateGuard::new(gl);
         let textures = vec![
             Texture::new(gl, TextureFormat::R32Float, size, 1)?,
@@ -43,56 +48,81 @@ impl DensityStage {
         ];
         let mut target = Target::new(gl, textures)?;
         target.clear_floats(&[Vec4::ZERO; 2]);
-        Ok(Self { gl: gl.clone(), program: Program::new(gl, &source())?, target, drawn: 0 })
+        let map = DensityMap::of_stage(target.texture());
+        Ok(Self { gl: gl.clone(), program: Program::new(gl, &source())?, target, map, read: (0, 0) })
     }
 
     /// Forgets all photons.
-    pub(crate) fn clear(&mut self) {
+    pub fn clear(&mut self) {
         let _state = StateGuard::new(&self.gl);
         self.target.clear_floats(&[Vec4::ZERO; 2]);
-        self.drawn = 0;
+        self.map.set_bounds(CountBounds::total_at_most(0));
+        self.read = (0, 0);
     }
 
-    /// Counts photons in.
-    pub(crate) fn add(&mut self, surfaces: &SurfaceMaps, photons: &PhotonPoints) -> Result<()> {
-        let _state = StateGuard::new(&self.gl);
-        for chunk in photons.chunks() {
-            self.add_chunk(surfaces, chunk)?;
-        }
-        self.gl.check("drawing photons")
-    }
-
-    fn add_chunk(&mut self, surfaces: &SurfaceMaps, chunk: &Vertices) -> Result<()> {
-        self.drawn += u64::from(chunk.count());
-        surfaces.read_by(Pass::new(LABEL, &self.program)).add_points(chunk, &mut self.target)
-    }
-
-    /// The counts.
+    /// Counts photons in, beside those that are there.
+    ///
+    /// The counts are read back, which waits for the GPU, only when 2^24 photons more were drawn than the fullest pixel
+    /// leaves room for.
     ///
     /// # Errors
-    /// [`Error::Inexact`] if a pixel holds 2^24 photons.
-    pub(crate) fn map(&self) -> Result<DensityMap> {
-        #[expect(clippy::cast_precision_loss, reason = "compared with 2^24 only")]
-        if self.drawn as f32 >= MOST && self.read_counts()?.values().iter().any(|&count| count >= MOST) {
-            return Err(Error::Inexact {
-                reason: "a pixel holds 2^24 photons or more, where additive blending stops to count"
-                    .to_owned(),
-                remedy: "take fewer photons or a larger picture".to_owned(),
-            });
+    /// [`Error::Mismatch`] if the surfaces have another size; [`Error::Inexact`] if a pixel holds 2^24 photons;
+    /// [`Error::Gl`] if the driver fails.
+    pub fn add(&mut self, surfaces: &SurfaceMaps, photons: &PhotonPoints) -> Result<&DensityMap> {
+        surfaces.check_size(self.map.size())?;
+        let state = StateGuard::new(&self.gl);
+        for chunk in photons.chunks() {
+            surfaces.read_by(Pass::new(LABEL, &self.program)).add_points(chunk, &mut self.target)?;
         }
-        DensityMap::borrow(&self.gl, self.target.texture().name(), CountBounds::total_at_most(self.drawn))
+        self.gl.check("drawing photons")?;
+        drop(state);
+        let drawn = self.drawn() + photons.count();
+        self.map.set_bounds(CountBounds::total_at_most(drawn));
+        let (drawn_then, fullest_then) = self.read;
+        if drawn - drawn_then + fullest_then >= MOST {
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a count up to 2^24")]
+            let fullest =
+                self.read_counts()?.values().iter().fold(0.0_f32, |most, &count| most.max(count)) as u64;
+            self.read = (drawn, fullest);
+            if fullest >= MOST {
+                return Err(Error::Inexact {
+                    reason: "a pixel holds 2^24 photons or more, where additive blending stops to count"
+                        .to_owned(),
+                    remedy: "take fewer photons or a larger picture".to_owned(),
+                });
+            }
+        }
+        Ok(&self.map)
     }
 
-    /// Photons of each pixel.
-    pub(crate) fn read_counts(&self) -> Result<Image<f32>> {
+    /// The counts: photons of each pixel.
+    #[must_use]
+    pub fn map(&self) -> &DensityMap {
+        &self.map
+    }
+
+    /// Photons drawn, seen or not.
+    #[must_use]
+    pub fn drawn(&self) -> u64 {
+        self.map.bounds().total
+    }
+
+    /// Photons of each pixel, read back; waits for the GPU.
+    ///
+    /// # Errors
+    /// [`Error::Gl`] if the driver fails.
+    pub fn read_counts(&self) -> Result<Image<f32>> {
         let _state = StateGuard::new(&self.gl);
         let counts = self.target.texture().read(0);
         self.gl.check("reading a density map back")?;
         Ok(counts)
     }
 
-    /// Power of each pixel's photons, linear RGB, and their count.
-    pub(crate) fn read_power(&self) -> Result<Image<[f32; 4]>> {
+    /// Power of each pixel's photons, linear RGB, and their count, read back; waits for the GPU.
+    ///
+    /// # Errors
+    /// [`Error::Gl`] if the driver fails.
+    pub fn read_power(&self) -> Result<Image<[f32; 4]>> {
         let _state = StateGuard::new(&self.gl);
         let power = self.target.textures()[1].read(0);
         self.gl.check("reading a power map back")?;
@@ -105,6 +135,7 @@ impl DensityStage {
     }
 }
 
+/// The shaders that the stage compiles.
 pub(crate) fn source() -> ShaderSource {
     ShaderSource::new(LABEL)
         .vertex_file(glsl!("common/surfaces.glsl"))

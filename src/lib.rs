@@ -102,7 +102,6 @@ pub mod certificate;
 pub mod context;
 #[cfg(feature = "render")]
 mod cube_map;
-#[cfg(feature = "render")]
 mod density;
 mod driver_limits;
 pub mod error;
@@ -112,11 +111,13 @@ pub mod frame;
 mod gbuffer;
 pub mod gl;
 pub mod image;
+pub mod irradiance;
 pub mod maps;
 mod mask;
 pub mod measure;
 #[cfg(feature = "scene")]
 pub mod photon;
+mod photon_point;
 pub mod pipeline;
 pub mod planner;
 mod radius;
@@ -130,24 +131,27 @@ pub mod settings;
 mod shade;
 #[cfg(feature = "render")]
 mod shadow_map;
-#[cfg(feature = "render")]
 mod splat;
 pub mod structure;
 #[cfg(feature = "synth")]
 pub mod synth;
-#[cfg(feature = "render")]
 pub mod view;
 
 pub use {glam, glow};
 
 pub use adaptive::AdaptivePipeline;
 pub use certificate::Certificate;
+pub use density::DensityStage;
 pub use error::{Error, Result};
 pub use exactness::CountBounds;
 pub use frame::{Changed, Frame};
 pub use gl::Gl;
 pub use image::Image;
-pub use maps::{DensityMap, RadiusMap};
+pub use irradiance::IrradiancePipeline;
+pub use maps::{ChosenRadius, DensityMap, HostSurfaces, IrradianceMap, PhotonPoints, RadiusMap, SurfaceMaps};
 pub use mask::{Mask, MaskMaker};
+pub use photon_point::PhotonPoint;
 pub use pipeline::RadiusPipeline;
 pub use settings::Settings;
+pub use splat::{GatherStage, SplatStage};
+pub use view::View;

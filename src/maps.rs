@@ -1,18 +1,12 @@
 //! What flows between the stages, each with its unit.
 
-#[cfg(feature = "render")]
 mod irradiance;
-#[cfg(feature = "render")]
 mod photons;
-#[cfg(feature = "render")]
 mod surfaces;
 
-#[cfg(feature = "render")]
 pub use irradiance::IrradianceMap;
-#[cfg(feature = "render")]
 pub use photons::{ChosenRadius, PhotonPoints};
-#[cfg(feature = "render")]
-pub use surfaces::SurfaceMaps;
+pub use surfaces::{HostSurfaces, SurfaceMaps};
 
 use glam::UVec2;
 
@@ -78,10 +72,25 @@ impl DensityMap {
         Ok(Self { texture: Texture::borrow(gl, texture)?, bounds })
     }
 
+    /// The counts that a stage adds up in a texture of its own, none yet.
+    pub(crate) fn of_stage(texture: &Texture) -> Self {
+        Self { texture: texture.alias(), bounds: CountBounds::total_at_most(0) }
+    }
+
+    pub(crate) fn set_bounds(&mut self, bounds: CountBounds) {
+        self.bounds = bounds;
+    }
+
     /// Columns and rows.
     #[must_use]
     pub fn size(&self) -> UVec2 {
         self.texture.size()
+    }
+
+    /// The name of the texture.
+    #[must_use]
+    pub fn name(&self) -> glow::Texture {
+        self.texture.name()
     }
 
     /// The format of the texture.

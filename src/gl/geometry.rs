@@ -6,44 +6,114 @@ use glow::HasContext as _;
 
 use super::pass::{Pass, Target};
 use super::{Gl, Texture, TextureFormat, gl_error};
-use crate::error::Result;
+use crate::error::{Error, Result};
 
 /// Vertices of f32 attributes, on the GPU: one vertex each for points and triangles, one quad each for instances.
 #[derive(Debug)]
 pub(crate) struct Vertices {
     gl: Gl,
-    buffer: Option<glow::Buffer>,
+    buffer: Buffer,
     /// Attributes advance with each vertex, and with each instance.
     arrays: [Option<glow::VertexArray>; 2],
     count: i32,
+}
+
+/// Where vertices lie.
+#[derive(Debug)]
+enum Buffer {
+    Ours(glow::Buffer),
+    Hosts,
 }
 
 impl Vertices {
     /// Uploads `vertices`, whose f32 fields are attributes 0, 1, ... of as many components as `components` says.
     ///
     /// # Errors
-    /// [`Error::Gl`](crate::Error::Gl) when memory runs out.
+    /// [`Error::Gl`] when memory runs out.
     ///
     /// # Panics
     /// If the components do not make up a vertex: our own mistake.
     pub(crate) fn upload<V: Pod>(gl: &Gl, vertices: &[V], components: &[u8]) -> Result<Self> {
-        let stride = i32::try_from(size_of::<V>()).expect("small vertices");
-        let floats: i32 = components.iter().map(|&count| i32::from(count)).sum();
-        assert_eq!(floats * 4, stride, "attributes make up a vertex");
-        let count = i32::try_from(vertices.len()).expect("fewer than 2^31 vertices in a buffer");
-        let mut owned = Self { gl: gl.clone(), buffer: None, arrays: [None; 2], count };
+        assert_eq!(size_of::<V>(), vertex_bytes(components), "attributes make up a vertex");
         let glow = gl.glow();
-        // SAFETY: the context is current while the handle lives; the buffer holds `count` vertices of `stride` bytes, and
-        // each attribute lies inside of one.
+        // SAFETY: the context is current while the handle lives.
+        let buffer = unsafe { glow.create_buffer() }.map_err(|what| gl_error(glow, &what))?;
+        let mut owned = Self { gl: gl.clone(), buffer: Buffer::Ours(buffer), arrays: [None; 2], count: 0 };
+        owned.replace(vertices)?;
+        owned.describe(buffer, 0, components)?;
+        gl.check("describing vertices")?;
+        Ok(owned)
+    }
+
+    /// Reads `count` vertices from `first` on of a buffer that stays the host's.
+    ///
+    /// # Errors
+    /// [`Error::Mismatch`] if it is no buffer, or has no room for them; [`Error::Gl`] when names run out.
+    pub(crate) fn borrow(
+        gl: &Gl,
+        buffer: glow::Buffer,
+        first: u32,
+        count: u32,
+        components: &[u8],
+    ) -> Result<Self> {
+        let bytes = u64::try_from(vertex_bytes(components)).expect("few bytes");
+        let needed = bytes * (u64::from(first) + u64::from(count));
+        let mismatch = |got: String| Error::Mismatch {
+            what: "host's vertex buffer",
+            expected: format!("at least {needed} bytes"),
+            got,
+        };
+        let glow = gl.glow();
+        // SAFETY: the context is current while the handle lives.
+        let size = unsafe {
+            if !glow.is_buffer(buffer) {
+                return Err(mismatch("a name that is no buffer, or was never bound".to_owned()));
+            }
+            glow.bind_buffer(glow::ARRAY_BUFFER, Some(buffer));
+            glow.get_buffer_parameter_i32(glow::ARRAY_BUFFER, glow::BUFFER_SIZE)
+        };
+        if u64::from(size.cast_unsigned()) < needed {
+            return Err(mismatch(format!("{} bytes", size.cast_unsigned())));
+        }
+        let mut owned =
+            Self { gl: gl.clone(), buffer: Buffer::Hosts, arrays: [None; 2], count: signed(count) };
+        let offset = bytes * u64::from(first);
+        owned.describe(buffer, i32::try_from(offset).expect("within a buffer of 2^31 bytes"), components)?;
+        gl.check("describing a host's vertices")?;
+        Ok(owned)
+    }
+
+    /// Puts other vertices in their place, of the same kind; the driver need not wait until the old ones are drawn.
+    ///
+    /// # Errors
+    /// [`Error::Gl`] when memory runs out.
+    pub(crate) fn replace<V: Pod>(&mut self, vertices: &[V]) -> Result<()> {
+        let Buffer::Ours(buffer) = self.buffer else {
+            unreachable!("a host's vertices are the host's to change")
+        };
+        let glow = self.gl.glow();
+        // SAFETY: the context is current while the handle lives; the whole buffer is made anew.
         unsafe {
-            let failed = |what: String| gl_error(glow, &what);
-            owned.buffer = Some(glow.create_buffer().map_err(failed)?);
-            glow.bind_buffer(glow::ARRAY_BUFFER, owned.buffer);
-            glow.buffer_data_u8_slice(glow::ARRAY_BUFFER, bytemuck::cast_slice(vertices), glow::STATIC_DRAW);
-            for (divisor, array) in (0..).zip(&mut owned.arrays) {
-                *array = Some(glow.create_vertex_array().map_err(failed)?);
+            glow.bind_buffer(glow::ARRAY_BUFFER, Some(buffer));
+            glow.buffer_data_u8_slice(glow::ARRAY_BUFFER, bytemuck::cast_slice(vertices), glow::STREAM_DRAW);
+        }
+        self.gl.check("uploading vertices")?;
+        self.count = i32::try_from(vertices.len()).expect("fewer than 2^31 vertices in a buffer");
+        Ok(())
+    }
+
+    /// Makes the vertex arrays over the buffer, from byte `first` on.
+    fn describe(&mut self, buffer: glow::Buffer, first: i32, components: &[u8]) -> Result<()> {
+        let stride = i32::try_from(vertex_bytes(components)).expect("few bytes");
+        let glow = self.gl.glow();
+        // SAFETY: the context is current while the handle lives; each attribute lies inside of a vertex, and the vertices in
+        // the buffer.
+        unsafe {
+            glow.bind_buffer(glow::ARRAY_BUFFER, Some(buffer));
+            for (divisor, array) in (0..).zip(&mut self.arrays) {
+                *array = Some(glow.create_vertex_array().map_err(|what| gl_error(glow, &what))?);
                 glow.bind_vertex_array(*array);
-                let mut offset = 0;
+                let mut offset = first;
                 for (attribute, &count) in (0..).zip(components) {
                     glow.enable_vertex_attrib_array(attribute);
                     glow.vertex_attrib_divisor(attribute, divisor);
@@ -53,14 +123,22 @@ impl Vertices {
                 }
             }
         }
-        gl.check("uploading vertices")?;
-        Ok(owned)
+        Ok(())
     }
 
     /// How many there are.
     pub(crate) fn count(&self) -> u32 {
         self.count.cast_unsigned()
     }
+}
+
+/// Bytes of a vertex with f32 attributes of so many components.
+fn vertex_bytes(components: &[u8]) -> usize {
+    components.iter().map(|&count| 4 * usize::from(count)).sum()
+}
+
+fn signed(count: u32) -> i32 {
+    i32::try_from(count).expect("fewer than 2^31 vertices in a buffer")
 }
 
 impl Drop for Vertices {
@@ -71,7 +149,7 @@ impl Drop for Vertices {
             for array in self.arrays.into_iter().flatten() {
                 glow.delete_vertex_array(array);
             }
-            if let Some(buffer) = self.buffer {
+            if let Buffer::Ours(buffer) = self.buffer {
                 glow.delete_buffer(buffer);
             }
         }
@@ -83,6 +161,7 @@ impl Target {
     ///
     /// # Errors
     /// Those of [`Texture::new`] and [`Target::new`].
+    #[cfg(feature = "render")]
     pub(crate) fn with_depth(gl: &Gl, textures: Vec<Texture>) -> Result<Self> {
         let depth = Texture::new(gl, TextureFormat::Depth32Float, textures[0].size(), 1)?;
         Self::assemble(gl, textures, Some(depth))
@@ -120,7 +199,8 @@ impl Pass<'_> {
     /// Draws triangles, three vertices each, of which the nearest stays; both sides are drawn.
     ///
     /// # Errors
-    /// [`Error::UnknownUniform`](crate::Error::UnknownUniform) if the program lacks a name.
+    /// [`Error::UnknownUniform`] if the program lacks a name.
+    #[cfg(feature = "render")]
     pub(crate) fn draw_triangles(self, vertices: &Vertices, target: &mut Target) -> Result<()> {
         assert!(target.depth.is_some(), "triangles hide each other by depth");
         self.prepare(target, 0, UVec2::ZERO, target.size(), |gl| {
@@ -142,7 +222,7 @@ impl Pass<'_> {
     /// The vertex shader sets `gl_PointSize`.
     ///
     /// # Errors
-    /// [`Error::UnknownUniform`](crate::Error::UnknownUniform) if the program lacks a name.
+    /// [`Error::UnknownUniform`] if the program lacks a name.
     pub(crate) fn add_points(self, vertices: &Vertices, target: &mut Target) -> Result<()> {
         self.prepare(target, 0, UVec2::ZERO, target.size(), |gl| {
             // SAFETY: the context is current, and the buffer holds that many vertices.
@@ -158,7 +238,7 @@ impl Pass<'_> {
     /// Draws over the whole of `target`; values are added to what is there.
     ///
     /// # Errors
-    /// [`Error::UnknownUniform`](crate::Error::UnknownUniform) if the program lacks a name.
+    /// [`Error::UnknownUniform`] if the program lacks a name.
     pub(crate) fn add(self, target: &mut Target) -> Result<()> {
         self.prepare(target, 0, UVec2::ZERO, target.size(), |gl| {
             // SAFETY: the context is current, and the full-screen vertex stage reads no buffer.
@@ -172,7 +252,7 @@ impl Pass<'_> {
     /// Draws one quad for each vertex, which is an instance of a strip of four; values are added to what is there.
     ///
     /// # Errors
-    /// [`Error::UnknownUniform`](crate::Error::UnknownUniform) if the program lacks a name.
+    /// [`Error::UnknownUniform`] if the program lacks a name.
     pub(crate) fn add_quads(self, vertices: &Vertices, target: &mut Target) -> Result<()> {
         self.prepare(target, 0, UVec2::ZERO, target.size(), |gl| {
             // SAFETY: the context is current, and the buffer holds that many instances.

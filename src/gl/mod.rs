@@ -7,7 +7,6 @@
 
 mod device_info;
 mod fragment_test;
-#[cfg(feature = "render")]
 mod geometry;
 mod pass;
 mod program;
@@ -20,7 +19,6 @@ mod timer;
 
 pub use device_info::DeviceInfo;
 pub(crate) use fragment_test::{FragmentTest, fill_where};
-#[cfg(feature = "render")]
 pub(crate) use geometry::Vertices;
 pub(crate) use pass::{Pass, Target};
 pub(crate) use program::Program;

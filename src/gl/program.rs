@@ -14,9 +14,7 @@ pub(crate) enum Uniform {
     Uint(u32),
     IntPair(glam::IVec2),
     Float(f32),
-    #[cfg(feature = "render")]
     FloatTriple(glam::Vec3),
-    #[cfg(feature = "render")]
     Matrix(glam::Mat4),
 }
 
@@ -44,14 +42,12 @@ impl From<f32> for Uniform {
     }
 }
 
-#[cfg(feature = "render")]
 impl From<glam::Vec3> for Uniform {
     fn from(value: glam::Vec3) -> Self {
         Self::FloatTriple(value)
     }
 }
 
-#[cfg(feature = "render")]
 impl From<glam::Mat4> for Uniform {
     fn from(value: glam::Mat4) -> Self {
         Self::Matrix(value)
@@ -142,11 +138,9 @@ impl Program {
                 (glow::UNSIGNED_INT, Uniform::Uint(value)) => glow.uniform_1_u32(location, value),
                 (glow::INT_VEC2, Uniform::IntPair(value)) => glow.uniform_2_i32(location, value.x, value.y),
                 (glow::FLOAT, Uniform::Float(value)) => glow.uniform_1_f32(location, value),
-                #[cfg(feature = "render")]
                 (glow::FLOAT_VEC3, Uniform::FloatTriple(value)) => {
                     glow.uniform_3_f32(location, value.x, value.y, value.z);
                 }
-                #[cfg(feature = "render")]
                 (glow::FLOAT_MAT4, Uniform::Matrix(value)) => {
                     glow.uniform_matrix_4_f32_slice(location, false, &value.to_cols_array());
                 }

@@ -26,6 +26,12 @@ pub enum TextureFormat {
     Rgba32Uint,
     /// GL_RGBA32F: places, normals, colours.
     Rgba32Float,
+    /// GL_RGBA16F: a host's normals or colours.
+    Rgba16Float,
+    /// GL_RGB32F: a host's places, normals or colours; its fourth value reads 1.
+    Rgb32Float,
+    /// GL_RGB16F: a host's normals or colours; its fourth value reads 1.
+    Rgb16Float,
     /// GL_DEPTH_COMPONENT32F: what hides what.
     Depth32Float,
 }
@@ -43,6 +49,9 @@ impl TextureFormat {
             Self::R8Uint => glow::R8UI,
             Self::Rgba32Uint => glow::RGBA32UI,
             Self::Rgba32Float => glow::RGBA32F,
+            Self::Rgba16Float => glow::RGBA16F,
+            Self::Rgb32Float => glow::RGB32F,
+            Self::Rgb16Float => glow::RGB16F,
             Self::Depth32Float => glow::DEPTH_COMPONENT32F,
         }
     }
@@ -56,12 +65,15 @@ impl TextureFormat {
             Self::R8Uint => (glow::RED_INTEGER, glow::UNSIGNED_BYTE),
             Self::Rgba32Uint => (glow::RGBA_INTEGER, glow::UNSIGNED_INT),
             Self::Rgba32Float => (glow::RGBA, glow::FLOAT),
+            Self::Rgba16Float => (glow::RGBA, glow::HALF_FLOAT),
+            Self::Rgb32Float => (glow::RGB, glow::FLOAT),
+            Self::Rgb16Float => (glow::RGB, glow::HALF_FLOAT),
             Self::Depth32Float => (glow::DEPTH_COMPONENT, glow::FLOAT),
         }
     }
 
     pub(crate) fn is_float(self) -> bool {
-        matches!(self, Self::R32Float | Self::R16Float | Self::Rgba32Float | Self::Depth32Float)
+        !matches!(self, Self::R32Uint | Self::R16Uint | Self::R8Uint | Self::Rgba32Uint)
     }
 
     pub(super) fn texel_bytes(self) -> usize {
@@ -70,6 +82,18 @@ impl TextureFormat {
             Self::R16Uint | Self::R16Float => 2,
             Self::R8Uint => 1,
             Self::Rgba32Uint | Self::Rgba32Float => 16,
+            Self::Rgb32Float => 12,
+            Self::Rgba16Float => 8,
+            Self::Rgb16Float => 6,
+        }
+    }
+
+    /// Values of a texel.
+    fn components(self) -> usize {
+        match self {
+            Self::Rgba32Uint | Self::Rgba32Float | Self::Rgba16Float => 4,
+            Self::Rgb32Float | Self::Rgb16Float => 3,
+            _ => 1,
         }
     }
 
@@ -84,10 +108,21 @@ impl TextureFormat {
             Self::R8Uint => "GL_R8UI",
             Self::Rgba32Uint => "GL_RGBA32UI",
             Self::Rgba32Float => "GL_RGBA32F",
+            Self::Rgba16Float => "GL_RGBA16F",
+            Self::Rgb32Float => "GL_RGB32F",
+            Self::Rgb16Float => "GL_RGB16F",
             Self::Depth32Float => "GL_DEPTH_COMPONENT32F",
         }
     }
 }
+
+/// Where each value of a texel belongs.
+const SWIZZLES: [(u32, u32, &str); 4] = [
+    (glow::TEXTURE_SWIZZLE_R, glow::RED, "GL_TEXTURE_SWIZZLE_R GL_RED"),
+    (glow::TEXTURE_SWIZZLE_G, glow::GREEN, "GL_TEXTURE_SWIZZLE_G GL_GREEN"),
+    (glow::TEXTURE_SWIZZLE_B, glow::BLUE, "GL_TEXTURE_SWIZZLE_B GL_BLUE"),
+    (glow::TEXTURE_SWIZZLE_A, glow::ALPHA, "GL_TEXTURE_SWIZZLE_A GL_ALPHA"),
+];
 
 /// A GL_TEXTURE_2D, or a GL_TEXTURE_2D_ARRAY.
 #[derive(Debug)]
@@ -195,17 +230,30 @@ impl Texture {
         }
     }
 
-    /// Wraps a texture that stays the host's, after asking the driver what it is.
+    /// Wraps a map that stays the host's, after asking the driver what it is.
     ///
     /// # Errors
     /// [`Error::Mismatch`] if it is not a two-dimensional texture of a known format with level 0 as its base.
     pub(crate) fn borrow(gl: &Gl, name: glow::Texture) -> Result<Self> {
-        let mismatch =
-            |expected: String, got: String| Error::Mismatch { what: "host texture", expected, got };
+        Self::borrow_as(gl, name, "host texture", &TextureFormat::OF_MAPS)
+    }
+
+    /// Wraps a texture of one of `formats` that stays the host's; `what` it is, for errors.
+    ///
+    /// # Errors
+    /// [`Error::Mismatch`] if it is not a two-dimensional texture of such a format with level 0 as its base, and each value
+    /// where it belongs.
+    pub(crate) fn borrow_as(
+        gl: &Gl,
+        name: glow::Texture,
+        what: &'static str,
+        formats: &[TextureFormat],
+    ) -> Result<Self> {
+        let mismatch = |expected: String, got: String| Error::Mismatch { what, expected, got };
         let glow = gl.glow();
         // SAFETY: the context is current while the handle lives; a name of another target is an error that is
         // asked for at once.
-        let (internal, size, base, red) = unsafe {
+        let (internal, size, base) = unsafe {
             glow.active_texture(glow::TEXTURE0);
             glow.bind_texture(glow::TEXTURE_2D, Some(name));
             let code = glow.get_error();
@@ -219,24 +267,32 @@ impl Texture {
                 level(glow::TEXTURE_INTERNAL_FORMAT).cast_unsigned(),
                 UVec2::new(side(glow::TEXTURE_WIDTH), side(glow::TEXTURE_HEIGHT)),
                 glow.get_tex_parameter_i32(glow::TEXTURE_2D, glow::TEXTURE_BASE_LEVEL),
-                glow.get_tex_parameter_i32(glow::TEXTURE_2D, glow::TEXTURE_SWIZZLE_R),
             )
         };
         if size.min_element() == 0 {
             return Err(mismatch("an image at level 0".to_owned(), "none".to_owned()));
         }
-        let format = TextureFormat::OF_MAPS.into_iter().find(|format| format.internal() == internal);
+        let format = formats.iter().copied().find(|format| format.internal() == internal);
         let Some(format) = format else {
-            let known = TextureFormat::OF_MAPS.map(TextureFormat::name).join(", ");
-            return Err(mismatch(format!("one of {known}"), format_name(internal)));
+            let known: Vec<_> = formats.iter().copied().map(TextureFormat::name).collect();
+            return Err(mismatch(format!("one of {}", known.join(", ")), format_name(internal)));
         };
         if base != 0 {
             return Err(mismatch("GL_TEXTURE_BASE_LEVEL 0".to_owned(), base.to_string()));
         }
-        if red.cast_unsigned() != glow::RED {
-            return Err(mismatch("GL_TEXTURE_SWIZZLE_R GL_RED".to_owned(), format!("{red:#06x}")));
+        for (swizzle, value, words) in &SWIZZLES[..format.components()] {
+            // SAFETY: the context is current, and the texture bound.
+            let got = unsafe { glow.get_tex_parameter_i32(glow::TEXTURE_2D, *swizzle) }.cast_unsigned();
+            if got != *value {
+                return Err(mismatch((*words).to_owned(), format!("{got:#06x}")));
+            }
         }
         Ok(Self { gl: gl.clone(), name, format, size, levels: 1, layers: None, ours: false })
+    }
+
+    /// The same texture for another reader; `self` stays its owner.
+    pub(crate) fn alias(&self) -> Self {
+        Self { gl: self.gl.clone(), ours: false, ..*self }
     }
 
     /// Replaces level 0.

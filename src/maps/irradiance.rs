@@ -20,6 +20,18 @@ impl IrradianceMap {
         Ok(Self { target: Target::single(gl, Texture::new(gl, TextureFormat::Rgba32Float, size, 1)?)? })
     }
 
+    /// Columns and rows.
+    #[must_use]
+    pub fn size(&self) -> UVec2 {
+        self.target.size()
+    }
+
+    /// The name of the texture, to bind in the host's own shaders as a `sampler2D`.
+    #[must_use]
+    pub fn name(&self) -> glow::Texture {
+        self.target.texture().name()
+    }
+
     /// Reads it back; waits for the GPU.
     ///
     /// # Errors

@@ -1,38 +1,70 @@
 //! Photons on their way to the picture, and the radii of their kernels.
 
 use super::RadiusMap;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::gl::{Gl, StateGuard, Vertices};
-use crate::photon::PhotonPoint;
+use crate::photon_point::PhotonPoint;
 
 /// Photons in a buffer: as many as the table of their areas has entries, and few enough that sums of one buffer's kernels
 /// stay exact to about 2^-9 (see `splat`).
-pub(crate) const CHUNK: usize = 1 << 16;
+const CHUNK: usize = 1 << 16;
 
 /// Photons on the GPU.
 #[derive(Debug)]
 pub struct PhotonPoints {
     gl: Gl,
     chunks: Vec<Vertices>,
+    /// Buffers that [`replace`](Self::replace) left over.
+    spare: Vec<Vertices>,
+    borrowed: bool,
 }
 
 impl PhotonPoints {
     /// None yet.
     #[must_use]
     pub fn new(gl: &Gl) -> Self {
-        Self { gl: gl.clone(), chunks: Vec::new() }
+        Self { gl: gl.clone(), chunks: Vec::new(), spare: Vec::new(), borrowed: false }
+    }
+
+    /// Reads the first `count` photons of a vertex buffer that the host owns and keeps alive as long as this: 40 bytes each,
+    /// as [`PhotonPoint`] has them. Their values may change between frames, not the buffer's size.
+    ///
+    /// # Errors
+    /// [`Error::Mismatch`] if it is no buffer, or has no room for them; [`Error::Gl`] when names run out.
+    pub fn borrow(gl: &Gl, buffer: glow::Buffer, count: u32) -> Result<Self> {
+        let _state = StateGuard::new(gl);
+        let step = u32::try_from(CHUNK).expect("2^16");
+        let chunks = (0..count).step_by(CHUNK).map(|first| {
+            Vertices::borrow(gl, buffer, first, step.min(count - first), &PhotonPoint::ATTRIBUTES)
+        });
+        Ok(Self { gl: gl.clone(), chunks: chunks.collect::<Result<_>>()?, spare: Vec::new(), borrowed: true })
     }
 
     /// Adds photons; best many at once.
     ///
     /// # Errors
-    /// [`Error::Gl`](crate::Error::Gl) when memory runs out.
+    /// [`Error::Mismatch`] if the buffer is the host's; [`Error::Gl`] when memory runs out.
     pub fn upload(&mut self, photons: &[PhotonPoint]) -> Result<()> {
+        self.check_ours()?;
         let _state = StateGuard::new(&self.gl);
         for chunk in photons.chunks(CHUNK) {
-            self.chunks.push(Vertices::upload(&self.gl, chunk, &[3, 3, 3, 1])?);
+            let vertices = match self.spare.pop() {
+                Some(mut vertices) => vertices.replace(chunk).map(|()| vertices),
+                None => Vertices::upload(&self.gl, chunk, &PhotonPoint::ATTRIBUTES),
+            };
+            self.chunks.push(vertices?);
         }
         Ok(())
+    }
+
+    /// Puts other photons in the place of all, in the buffers that are there: for photons that are new each frame.
+    ///
+    /// # Errors
+    /// As [`upload`](Self::upload); there are no photons then.
+    pub fn replace(&mut self, photons: &[PhotonPoint]) -> Result<()> {
+        self.check_ours()?;
+        self.spare.append(&mut self.chunks);
+        self.upload(photons)
     }
 
     /// How many there are.
@@ -44,6 +76,17 @@ impl PhotonPoints {
     pub(crate) fn chunks(&self) -> &[Vertices] {
         &self.chunks
     }
+
+    fn check_ours(&self) -> Result<()> {
+        if !self.borrowed {
+            return Ok(());
+        }
+        Err(Error::Mismatch {
+            what: "photons to add to",
+            expected: "a buffer of the library".to_owned(),
+            got: "a buffer of the host, which changes it itself".to_owned(),
+        })
+    }
 }
 
 /// Where the radii of kernels come from.
@@ -51,6 +94,14 @@ impl PhotonPoints {
 pub enum ChosenRadius<'a> {
     /// Each pixel's own.
     Map(&'a RadiusMap),
-    /// The same for all, in pixels.
+    /// The same for all, in pixels, up to [`MAX_PICTURE_RADIUS`](crate::settings::MAX_PICTURE_RADIUS).
     Fixed(u32),
+}
+
+impl ChosenRadius<'_> {
+    /// Whether it is the same for all.
+    #[must_use]
+    pub fn is_fixed(self) -> bool {
+        matches!(self, Self::Fixed(_))
+    }
 }

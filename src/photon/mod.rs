@@ -4,7 +4,6 @@ mod emission;
 mod files;
 mod landings;
 mod path;
-#[cfg(feature = "render")]
 mod point;
 mod random;
 mod records;
@@ -14,10 +13,10 @@ mod tracer;
 pub use emission::{Emission, EmittedPhoton};
 pub use files::{PhotonFormat, write};
 pub use landings::{Ends, Landings, Tally};
-#[cfg(feature = "render")]
-pub use point::PhotonPoint;
 pub use scatter::{reflect, refract};
 pub use tracer::{trace, trace_from, trace_from_hits, trace_in_batches};
+
+pub use crate::photon_point::PhotonPoint;
 
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;

@@ -6,14 +6,12 @@
 pub mod as_printed;
 mod definition;
 mod naive_mipmap;
-#[cfg(feature = "render")]
 mod picture;
 pub mod pyramid;
 mod table;
 
 pub use definition::{enough, radius};
 pub use naive_mipmap::naive_mipmap;
-#[cfg(feature = "render")]
 pub use picture::{Shown, gather, gather_at, photon_density, photon_power, splat};
 pub use table::{Table, binary_search, radius_by_table};
 

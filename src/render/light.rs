@@ -17,7 +17,6 @@ use crate::scene::Scene;
 use crate::settings::{DirectLight, PictureSettings};
 use crate::shade::TracedLight;
 use crate::shadow_map::ShadowMaps;
-use crate::view::View;
 
 /// All that needs no photons.
 #[derive(Debug)]
@@ -34,7 +33,7 @@ impl Light {
         settings: &PictureSettings,
         progress: &mut dyn FnMut(Progress),
     ) -> Result<Self> {
-        let view = View::new(scene, settings.size);
+        let view = scene.view(settings.size);
         let surfaces = SurfaceStage::new(gl)?.draw(scene, view)?;
         progress(Progress { stage: "direct light", done: 0.0 });
         let sight = Sight::new(scene, &view);

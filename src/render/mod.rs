@@ -22,20 +22,21 @@ use bytemuck::Zeroable as _;
 use glam::{DVec3, UVec2, Vec3};
 
 use crate::cube_map;
-use crate::density::{self, DensityStage};
+use crate::density::DensityStage;
 use crate::error::Result;
 use crate::frame::{Changed, Frame};
 use crate::gbuffer;
 use crate::gl::{Gl, ShaderSource, TextureFormat};
 use crate::image::Image;
-use crate::maps::{ChosenRadius, DensityMap, PhotonPoints, SurfaceMaps};
+use crate::irradiance;
+use crate::maps::{ChosenRadius, PhotonPoints, SurfaceMaps};
 use crate::photon::{Emission, PhotonPoint, TraceSettings};
 use crate::pipeline::RadiusPipeline;
 use crate::scene::Scene;
 use crate::settings::{Estimate, Kernel, PictureSettings, RadiusChoice, Search, Settings};
 use crate::shade::{self, ShadeStage, TracedLight};
 use crate::shadow_map;
-use crate::splat::{self, GatherStage, SplatStage};
+use crate::splat::{GatherStage, SplatStage};
 use crate::view::View;
 use light::Light;
 use nearest::PhotonGrid;
@@ -157,16 +158,15 @@ impl Renderer {
     /// counted.
     pub fn picture(&mut self, settings: &PictureSettings) -> Result<(Layers, Account)> {
         settings.validate()?;
-        let density = self.density.map()?;
         let mut searched = None;
         let (chosen, width) = match settings.radius {
             RadiusChoice::Fixed(radius) => (ChosenRadius::Fixed(radius), Wanted::Fixed(radius)),
             RadiusChoice::Variable => {
-                let pipeline = searched.insert(self.radius_pipeline(settings, &density)?);
+                let pipeline = searched.insert(self.radius_pipeline(settings)?);
                 // The photons are those of the picture before, if there was one.
                 let searches_again = std::mem::take(&mut self.searches_again);
                 let changed = if searches_again { Changed::Everything } else { Changed::Nothing };
-                let radii = pipeline.update(&Frame { changed, ..Frame::new(&density) })?;
+                let radii = pipeline.update(&Frame { changed, ..Frame::new(self.density.map()) })?;
                 (ChosenRadius::Map(radii), Wanted::Holding(settings.min_photons, settings.max_radius))
             }
         };
@@ -183,7 +183,7 @@ impl Renderer {
             Estimate::Gather { count_correction } => {
                 let mut stage =
                     GatherStage::new(&self.gl, self.size, settings.kernel, fixed, count_correction)?;
-                let irradiance = stage.gather(&self.surfaces, self.density.power(), chosen)?;
+                let irradiance = stage.gather(&self.surfaces, &self.density, chosen)?;
                 (shade.shade(&self.surfaces, irradiance, &self.light)?, irradiance.read()?)
             }
         };
@@ -222,15 +222,14 @@ impl Renderer {
         settings.validate()?;
         let mut nowhere = PhotonPoints::new(&self.gl);
         nowhere.upload(&[PhotonPoint::zeroed()])?;
-        let density = self.density.map()?;
         let fixed = matches!(settings.radius, RadiusChoice::Fixed(_));
         let mut searched = None;
         let chosen = match settings.radius {
             RadiusChoice::Fixed(radius) => ChosenRadius::Fixed(radius),
             RadiusChoice::Variable => {
-                let pipeline = searched.insert(self.radius_pipeline(settings, &density)?);
+                let pipeline = searched.insert(self.radius_pipeline(settings)?);
                 self.searches_again = true;
-                ChosenRadius::Map(pipeline.render(&density)?)
+                ChosenRadius::Map(pipeline.render(self.density.map())?)
             }
         };
         let stage = splat_stage(&self.gl, self.size, &mut self.splats, settings.kernel, fixed)?;
@@ -241,18 +240,14 @@ impl Renderer {
     }
 
     /// The pipeline of the picture before, with its radii, if it answers the same question; else a new one.
-    fn radius_pipeline(
-        &mut self,
-        settings: &PictureSettings,
-        density: &DensityMap,
-    ) -> Result<RadiusPipeline> {
+    fn radius_pipeline(&mut self, settings: &PictureSettings) -> Result<RadiusPipeline> {
         let usual = Settings::default();
         let search =
             Search { min_photons: settings.min_photons, max_radius: settings.max_radius, ..usual.search };
         let settings = Settings { search, limited_mask: true, ..usual };
         match self.radii.take().filter(|pipeline| *pipeline.settings() == settings) {
             Some(pipeline) => Ok(pipeline),
-            None => RadiusPipeline::new(&self.gl, density.size(), TextureFormat::R32Float, settings),
+            None => RadiusPipeline::new(&self.gl, self.size, TextureFormat::R32Float, settings),
         }
     }
 
@@ -336,14 +331,9 @@ fn rgb([red, green, blue, _]: [f32; 4]) -> [f32; 3] {
 /// Every shader that a picture may compile beside those of the radius map.
 #[must_use]
 pub fn shader_sources() -> Vec<ShaderSource> {
-    let mut sources = vec![density::source(), shade::source(), shadow_map::source()];
+    let mut sources = irradiance::shader_sources();
+    sources.extend([shade::source(), shadow_map::source()]);
     sources.extend(cube_map::sources());
     sources.extend(gbuffer::sources());
-    for kernel in Kernel::ALL {
-        for fixed in [false, true] {
-            sources.extend(splat::sources(kernel, fixed));
-            sources.extend([false, true].map(|correct| splat::gather_source(kernel, fixed, correct)));
-        }
-    }
     sources
 }

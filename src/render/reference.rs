@@ -73,7 +73,6 @@ impl Reference {
         self.density.clear();
         self.density.add(&self.surfaces, &traced.points)?;
         // The counts are checked before they are believed.
-        self.density.map()?;
         add_up(&mut self.power, &self.density.read_power()?);
         let through = seen_through(&view, &self.bent, traced.grid.as_ref(), Wanted::Fixed(0), Kernel::Box);
         add_up(&mut self.seen_through, &through);

@@ -27,9 +27,8 @@ impl Renderer {
     pub fn into_stages(mut self, settings: &PictureSettings) -> Result<Stages> {
         settings.validate()?;
         let correct = settings.estimate == Estimate::Gather { count_correction: true };
-        let density = self.density.map()?;
-        let mut radii = self.radius_pipeline(settings, &density)?;
-        radii.update(&Frame::new(&density))?;
+        let mut radii = self.radius_pipeline(settings)?;
+        radii.update(&Frame::new(self.density.map()))?;
         let splat = |fixed| SplatStage::new(&self.gl, self.size, settings.kernel, fixed);
         Ok(Stages {
             radii,
@@ -59,7 +58,7 @@ impl Stages {
     /// [`Error::Gl`](crate::Error::Gl) if the driver fails.
     pub fn count(&mut self) -> Result<()> {
         self.renderer.density.clear();
-        self.renderer.density.add(&self.renderer.surfaces, &self.renderer.traced.points)
+        self.renderer.density.add(&self.renderer.surfaces, &self.renderer.traced.points).map(|_| ())
     }
 
     /// How many photons each pixel has.
@@ -75,8 +74,7 @@ impl Stages {
     /// # Errors
     /// As [`RadiusPipeline::update`].
     pub fn search(&mut self) -> Result<()> {
-        let density = self.renderer.density.map()?;
-        self.radii.update(&Frame::new(&density)).map(|_| ())
+        self.radii.update(&Frame::new(self.renderer.density.map())).map(|_| ())
     }
 
     /// The radii.
@@ -108,7 +106,7 @@ impl Stages {
     /// [`Error::Gl`](crate::Error::Gl) if the driver fails.
     pub fn gather(&mut self) -> Result<&IrradianceMap> {
         let Renderer { surfaces, density, .. } = &self.renderer;
-        self.gather.gather(surfaces, density.power(), ChosenRadius::Map(self.radii.radii()))
+        self.gather.gather(surfaces, density, ChosenRadius::Map(self.radii.radii()))
     }
 
     /// The account of the last counts and of irradiance that a splat or gather gave.

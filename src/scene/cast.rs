@@ -15,7 +15,8 @@ use obvhs::bvh2::builder::build_bvh2;
 use obvhs::ray::{Ray as BoxRay, RayHit};
 
 use super::geometry::Geometry;
-use super::intersect::{Ray, TriangleEdges, intersect_sphere};
+use super::intersect::{TriangleEdges, intersect_sphere};
+use crate::view::Ray;
 
 /// By how much boxes are wider, as a share of the scene's extent: several times what f32 loses.
 const BOX_MARGIN: f32 = 4e-6;

@@ -2,19 +2,12 @@
 
 use glam::{DVec2, DVec3};
 
+use crate::view::Ray;
+
 /// How far outside a triangle still counts as inside, in barycentric coordinates.
 ///
 /// Neighbours then overlap by less than any f32 can tell, instead of leaving a gap by rounding.
 const OVERLAP: f64 = 1e-12;
-
-/// A half line.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ray {
-    /// In scene units.
-    pub origin: DVec3,
-    /// Of length 1.
-    pub direction: DVec3,
-}
 
 /// A triangle as its first corner and the two edges from there.
 #[derive(Clone, Copy, Debug)]

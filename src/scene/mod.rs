@@ -4,7 +4,6 @@
 //! coordinates are right-handed.
 
 mod build;
-mod camera;
 mod cast;
 mod fields;
 mod format;
@@ -18,21 +17,23 @@ mod mesh;
 mod shipped;
 mod source;
 
-pub use camera::Camera;
 pub use cast::Hit;
 pub use geometry::{Geometry, Sphere, Triangle, Vertex};
-pub use intersect::{Ray, TriangleEdges, intersect_sphere};
+pub use intersect::{TriangleEdges, intersect_sphere};
 pub(crate) use light::cap_height;
 pub use light::{Light, LightShape, area};
 #[cfg(feature = "render")]
 pub(crate) use light_place::LightPlace;
 pub use material::{Material, Scattering};
 
+pub use crate::view::{Camera, Ray};
+
 use std::fmt;
 use std::path::Path;
 
-use glam::{DVec3, Vec3};
+use glam::{DVec3, UVec2, Vec3};
 
+use crate::view::View;
 use crate::{Error, Result};
 use cast::Target;
 use shipped::SHIPPED;
@@ -123,6 +124,13 @@ impl Scene {
     #[must_use]
     pub fn bounds(&self) -> (Vec3, Vec3) {
         self.geometry.bounds()
+    }
+
+    /// The scene as its camera sees it in a picture of `size`, all of it between the near and the far plane.
+    #[must_use]
+    pub fn view(&self, size: UVec2) -> View {
+        let (min, max) = self.bounds();
+        View::new(&self.camera, self.camera.depth_range(min, max), size)
     }
 
     /// The first surface that the ray meets.

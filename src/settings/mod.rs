@@ -4,16 +4,18 @@
 //! thesis ran.
 
 mod faults;
+mod irradiance;
+mod kernel;
 mod names;
 #[cfg(feature = "render")]
 mod picture;
 mod validate;
 
 pub use faults::Faults;
+pub use irradiance::IrradianceSettings;
+pub use kernel::{Kernel, MAX_PICTURE_RADIUS, RadiusChoice};
 #[cfg(feature = "render")]
-pub use picture::{
-    DirectLight, Estimate, FirstBounce, Kernel, MAX_PICTURE_RADIUS, PictureSettings, RadiusChoice,
-};
+pub use picture::{DirectLight, Estimate, FirstBounce, PictureSettings};
 
 /// The largest possible [`Search::max_radius`]: the area (2 MR + 1)² still fits 32 bits.
 pub const MAX_RADIUS_LIMIT: u32 = 32_767;

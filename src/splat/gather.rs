@@ -7,39 +7,52 @@
 
 use glam::UVec2;
 
-use super::read_radius;
+use super::{check, read_radius};
+use crate::density::DensityStage;
 use crate::error::Result;
-use crate::gl::{Gl, Pass, Program, ShaderSource, StateGuard, Texture, glsl};
+use crate::gl::{Gl, Pass, Program, ShaderSource, StateGuard, glsl};
 use crate::maps::{ChosenRadius, IrradianceMap, SurfaceMaps};
 use crate::settings::Kernel;
 
 const LABEL: &str = "gather";
 
-/// The shader of one kernel, and what it fills.
+/// Gathers with one kernel into maps of one size.
 #[derive(Debug)]
-pub(crate) struct GatherStage {
+pub struct GatherStage {
     gl: Gl,
     program: Program,
+    fixed: bool,
     irradiance: IrradianceMap,
 }
 
 impl GatherStage {
-    /// For kernels whose radii come from a map or are fixed; `correct` takes (c - 1) / c of what c photons give.
-    pub(crate) fn new(gl: &Gl, size: UVec2, kernel: Kernel, fixed: bool, correct: bool) -> Result<Self> {
+    /// Allocates and compiles for maps of `size`, and for kernels whose radii come from a map or are `fixed`; `correct` takes
+    /// (c - 1) / c of what c photons give.
+    ///
+    /// # Errors
+    /// [`Error::TooLarge`](crate::Error::TooLarge); [`Error::Shader`](crate::Error::Shader) if the driver refuses the shader;
+    /// [`Error::Gl`](crate::Error::Gl) when memory runs out.
+    pub fn new(gl: &Gl, size: UVec2, kernel: Kernel, fixed: bool, correct: bool) -> Result<Self> {
         let _state = StateGuard::new(gl);
         let program = Program::new(gl, &source(kernel, fixed, correct))?;
-        Ok(Self { gl: gl.clone(), program, irradiance: IrradianceMap::new(gl, size)? })
+        Ok(Self { gl: gl.clone(), program, fixed, irradiance: IrradianceMap::new(gl, size)? })
     }
 
-    /// Gathers at every pixel from the power of each pixel's photons and their count.
-    pub(crate) fn gather(
+    /// Gathers at every pixel from the power of each pixel's photons and their count, as `density` added them up.
+    ///
+    /// # Errors
+    /// [`Error::Mismatch`](crate::Error::Mismatch) if a map has another size, or the radius is fixed and the stage's is not, or
+    /// the other way round; [`Error::Gl`](crate::Error::Gl) if the driver fails.
+    pub fn gather(
         &mut self,
         surfaces: &SurfaceMaps,
-        power: &Texture,
+        density: &DensityStage,
         radius: ChosenRadius<'_>,
     ) -> Result<&IrradianceMap> {
+        check(surfaces, self.irradiance.size(), radius, self.fixed)?;
+        surfaces.check_size(density.map().size())?;
         let _state = StateGuard::new(&self.gl);
-        let pass = surfaces.read_by(Pass::new(LABEL, &self.program)).read("power", power);
+        let pass = surfaces.read_by(Pass::new(LABEL, &self.program)).read("power", density.power());
         read_radius(pass, radius).set("camera", surfaces.view().position()).fill(self.irradiance.target())?;
         self.gl.check("gathering photons")?;
         Ok(&self.irradiance)

@@ -19,11 +19,11 @@
 
 mod gather;
 
-pub(crate) use gather::GatherStage;
+pub use gather::GatherStage;
 
 use glam::{UVec2, Vec4};
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::gl::{Gl, Pass, Program, ShaderSource, StateGuard, Target, Texture, TextureFormat, glsl};
 use crate::maps::{ChosenRadius, IrradianceMap, PhotonPoints, SurfaceMaps};
 use crate::settings::Kernel;
@@ -38,13 +38,15 @@ const TABLE_SIDE: u32 = 1 << 8;
 /// How far a kernel may reach, in pixels: a square of that is what llvmpipe's loops finish (65,535 turns).
 const MAX_REACH: u32 = 126;
 
-/// The shaders of one kernel, and what they fill.
+/// Draws photons with one kernel into maps of one size.
 #[derive(Debug)]
-pub(crate) struct SplatStage {
+pub struct SplatStage {
     gl: Gl,
     covered: Program,
     spread: Program,
     addition: Program,
+    /// Whether all radii are the same.
+    fixed: bool,
     /// The covered area of each photon of a chunk.
     table: Target,
     /// What the chunk's kernels add up to, before it is added to all.
@@ -53,32 +55,62 @@ pub(crate) struct SplatStage {
 }
 
 impl SplatStage {
-    /// For kernels whose radii come from a map or are fixed.
-    pub(crate) fn new(gl: &Gl, size: UVec2, kernel: Kernel, fixed: bool) -> Result<Self> {
+    /// Allocates and compiles for maps of `size`, still dark, and for kernels whose radii come from a map or are `fixed`.
+    ///
+    /// # Errors
+    /// [`Error::TooLarge`]; [`Error::Shader`] if the driver refuses a shader; [`Error::Gl`] when memory runs out.
+    pub fn new(gl: &Gl, size: UVec2, kernel: Kernel, fixed: bool) -> Result<Self> {
         let _state = StateGuard::new(gl);
         let table = Texture::new(gl, TextureFormat::R32Float, UVec2::splat(TABLE_SIDE), 1)?;
         let of_chunk = Texture::new(gl, TextureFormat::Rgba32Float, size, 1)?;
         let [covered, spread, addition] = sources(kernel, fixed);
+        let mut irradiance = IrradianceMap::new(gl, size)?;
+        irradiance.target().clear_floats(&[Vec4::ZERO]);
         Ok(Self {
             gl: gl.clone(),
             covered: Program::new(gl, &covered)?,
             spread: Program::new(gl, &spread)?,
             addition: Program::new(gl, &addition)?,
+            fixed,
             table: Target::single(gl, table)?,
             of_chunk: Target::single(gl, of_chunk)?,
-            irradiance: IrradianceMap::new(gl, size)?,
+            irradiance,
         })
     }
 
-    /// Spreads all photons.
-    pub(crate) fn splat(
+    /// Forgets all light.
+    pub fn clear(&mut self) {
+        let _state = StateGuard::new(&self.gl);
+        self.irradiance.target().clear_floats(&[Vec4::ZERO]);
+    }
+
+    /// Spreads all photons, and nothing else.
+    ///
+    /// # Errors
+    /// As [`add`](Self::add).
+    pub fn splat(
         &mut self,
         surfaces: &SurfaceMaps,
         photons: &PhotonPoints,
         radius: ChosenRadius<'_>,
     ) -> Result<&IrradianceMap> {
+        self.clear();
+        self.add(surfaces, photons, radius)
+    }
+
+    /// Spreads photons and adds them to the light that is there.
+    ///
+    /// # Errors
+    /// [`Error::Mismatch`] if surfaces or radii have another size, or the radius is fixed and the stage's is not, or the other
+    /// way round; [`Error::Gl`] if the driver fails.
+    pub fn add(
+        &mut self,
+        surfaces: &SurfaceMaps,
+        photons: &PhotonPoints,
+        radius: ChosenRadius<'_>,
+    ) -> Result<&IrradianceMap> {
+        check(surfaces, self.irradiance.size(), radius, self.fixed)?;
         let _state = StateGuard::new(&self.gl);
-        self.irradiance.target().clear_floats(&[Vec4::ZERO]);
         let camera = surfaces.view().position();
         for chunk in photons.chunks() {
             self.table.clear_floats(&[Vec4::ZERO]);
@@ -98,6 +130,24 @@ impl SplatStage {
         self.gl.check("splatting photons")?;
         Ok(&self.irradiance)
     }
+
+    /// The light of all photons so far.
+    #[must_use]
+    pub fn irradiance(&self) -> &IrradianceMap {
+        &self.irradiance
+    }
+}
+
+/// Checks what kernels are drawn with.
+fn check(surfaces: &SurfaceMaps, size: UVec2, radius: ChosenRadius<'_>, fixed: bool) -> Result<()> {
+    surfaces.check_size(size)?;
+    let in_words = |fixed: bool| if fixed { "a fixed one" } else { "a radius map" }.to_owned();
+    let (expected, got) = match radius {
+        _ if radius.is_fixed() != fixed => (in_words(fixed), in_words(!fixed)),
+        ChosenRadius::Map(map) if map.size() != size => (size.to_string(), map.size().to_string()),
+        _ => return Ok(()),
+    };
+    Err(Error::Mismatch { what: "radius of the kernels", expected, got })
 }
 
 /// Gives a pass what `common/chosen_radius.glsl` reads.

@@ -41,7 +41,7 @@ fn what_is_hidden_turned_away_or_outside_does_not_count() {
     let gl = egl();
     let scene = wall();
     let settings = settings(16, Kernel::Box, RadiusChoice::Fixed(1));
-    let view = varikernel::view::View::new(&scene, UVec2::splat(16));
+    let view = scene.view(UVec2::splat(16));
     let photon = photon_at(&scene, &view, 5, 6, 1.0).unwrap();
     let behind = {
         let mut photon = photon;

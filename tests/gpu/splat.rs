@@ -6,7 +6,6 @@ use varikernel::reference::{self, photon_density};
 use varikernel::render::Renderer;
 use varikernel::scene::Scene;
 use varikernel::settings::{Estimate, Kernel, PictureSettings, RadiusChoice};
-use varikernel::view::View;
 
 use crate::stage::{irradiance, photon_at, relative_difference, settings, shown, traced, wall};
 use crate::support::egl;
@@ -17,7 +16,7 @@ fn the_splat_of_one_photon_is_its_kernel() {
     let scene = wall();
     for kernel in Kernel::ALL {
         let settings = settings(32, kernel, RadiusChoice::Fixed(5));
-        let view = View::new(&scene, settings.size);
+        let view = scene.view(settings.size);
         let photon = photon_at(&scene, &view, 15, 17, 3.0).unwrap();
         let (found, _) = irradiance(&gl, &scene, &settings, &[photon]);
         // The disc has the area of a box of 11 x 11 pixels; a pixel is 1/16 wide.
@@ -89,7 +88,7 @@ fn energy_is_kept_on_each_scene_at_edges_and_in_corners() {
             (Kernel::Gaussian, RadiusChoice::Fixed(1)),
         ] {
             let settings = settings(48, kernel, radius);
-            let view = View::new(&scene, settings.size);
+            let view = scene.view(settings.size);
             let mut photons = traced(&scene, 2_000, 5);
             // Along the picture's edges and in its corners, as far as something is seen there.
             for place in 0..48 {
@@ -128,7 +127,7 @@ fn painted(
     power: impl Fn(f32, f32) -> f32,
 ) -> Image<[f32; 3]> {
     let scene = wall();
-    let view = View::new(&scene, settings.size);
+    let view = scene.view(settings.size);
     let UVec2 { x: width, y: height } = settings.size;
     let places = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
     #[expect(clippy::cast_precision_loss, reason = "small")]

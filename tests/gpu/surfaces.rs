@@ -58,8 +58,8 @@ fn surfaces_are_where_rays_meet_them() {
         let mut moved = scene.clone();
         let right = moved.camera.direction.cross(moved.camera.up).normalize();
         moved.camera.direction =
-            moved.camera.direction.normalize() + right * View::new(&scene, UVec2::splat(96)).pixel_side();
-        let view = View::new(&moved, UVec2::splat(96));
+            moved.camera.direction.normalize() + right * scene.view(UVec2::splat(96)).pixel_side();
+        let view = moved.view(UVec2::splat(96));
         let (_, planted) = differences(&moved, &view, &position, &normal);
         assert!(planted > 2e-3 * extent, "{name}: {planted}");
     }

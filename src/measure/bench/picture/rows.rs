@@ -13,7 +13,6 @@ use crate::reference::{self, Shown};
 use crate::render::{Renderer, Stages};
 use crate::scene::Scene;
 use crate::settings::{PictureSettings, RadiusChoice, Search, Settings};
-use crate::view::View;
 
 /// The fixed radius with the least RMSE in the glass box (`varikernel figures`), in pixels.
 const BEST_FIXED: u32 = 2;
@@ -82,7 +81,7 @@ impl<'a> Rows<'a> {
         let trace = TraceSettings { photons, ..TraceSettings::default() };
         // Direct light is not timed.
         let settings = PictureSettings { size, light_samples: 1, ..PictureSettings::default() };
-        let view = View::new(scene, size);
+        let view = scene.view(size);
         let mut seen: Vec<PhotonPoint> = Vec::new();
         trace_in_batches(scene, &Emission::new(scene, &trace)?, |landings, _| {
             let points = landings.iter().filter(|photon| !photon.is_direct()).map(PhotonPoint::new);

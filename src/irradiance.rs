@@ -1,0 +1,124 @@
+//! Photons and a g-buffer in, irradiance out: density, radii and splat in order (thesis 2.6).
+//!
+//! Photons may come all at once, or part after part, each with the power of all lights: the sum of k parts is then k times
+//! the light. Each part is drawn with the radii of all photons so far, so that these shrink as photons come, and the mean
+//! of the parts gets sharper. Of k parts, the last is drawn with kernels of n / k of its photons; the mean has about half the
+//! variance that one splat of all photons with n each has, since early parts were drawn with wider kernels.
+
+use glam::UVec2;
+
+use crate::density::{self, DensityStage};
+use crate::error::Result;
+use crate::frame::Frame;
+use crate::gl::{Gl, ShaderSource, TextureFormat};
+use crate::maps::{ChosenRadius, DensityMap, IrradianceMap, PhotonPoints, RadiusMap, SurfaceMaps};
+use crate::pipeline::RadiusPipeline;
+use crate::settings::{IrradianceSettings, Kernel, RadiusChoice};
+use crate::splat::{self, SplatStage};
+
+/// Photons and surfaces in, irradiance out, for one size and one set of settings.
+///
+/// Everything is allocated and compiled by [`new`](Self::new); each call puts back the OpenGL state that it touches, also when
+/// it fails. The stages are usable apart: [`DensityStage`], [`RadiusPipeline`], [`SplatStage`].
+#[derive(Debug)]
+pub struct IrradiancePipeline {
+    settings: IrradianceSettings,
+    density: DensityStage,
+    /// For variable radii.
+    radii: Option<RadiusPipeline>,
+    splat: SplatStage,
+}
+
+impl IrradiancePipeline {
+    /// Allocates and compiles for surfaces of `size`.
+    ///
+    /// # Errors
+    /// [`Error::Setting`](crate::Error::Setting) outside of a setting's range, [`Error::TooLarge`](crate::Error::TooLarge),
+    /// [`Error::Shader`](crate::Error::Shader) if the driver refuses a shader, [`Error::Gl`](crate::Error::Gl) when memory runs
+    /// out.
+    pub fn new(gl: &Gl, size: UVec2, settings: IrradianceSettings) -> Result<Self> {
+        settings.validate()?;
+        let fixed = matches!(settings.radius, RadiusChoice::Fixed(_));
+        let radii = || RadiusPipeline::new(gl, size, TextureFormat::R32Float, settings.search);
+        Ok(Self {
+            settings,
+            density: DensityStage::new(gl, size)?,
+            radii: if fixed { None } else { Some(radii()?) },
+            splat: SplatStage::new(gl, size, settings.kernel, fixed)?,
+        })
+    }
+
+    /// The light of these photons, which carry the power of all lights together.
+    ///
+    /// # Errors
+    /// As [`add`](Self::add).
+    pub fn render(&mut self, surfaces: &SurfaceMaps, photons: &PhotonPoints) -> Result<&IrradianceMap> {
+        self.clear();
+        self.add(surfaces, photons)
+    }
+
+    /// Adds the light of these photons to what is there, with the radii of all photons so far.
+    ///
+    /// # Errors
+    /// [`Error::Mismatch`](crate::Error::Mismatch) if the surfaces have another size;
+    /// [`Error::Inexact`](crate::Error::Inexact) where a pixel has more photons than can be counted, see
+    /// [`DensityStage::add`], and as [`RadiusPipeline::render`]; [`Error::Gl`](crate::Error::Gl) if the driver fails.
+    pub fn add(&mut self, surfaces: &SurfaceMaps, photons: &PhotonPoints) -> Result<&IrradianceMap> {
+        let density = self.density.add(surfaces, photons)?;
+        let radius = match (&mut self.radii, self.settings.radius) {
+            (Some(radii), _) => ChosenRadius::Map(radii.update(&Frame::new(density))?),
+            (None, RadiusChoice::Fixed(radius)) => ChosenRadius::Fixed(radius),
+            (None, RadiusChoice::Variable) => unreachable!("made with a search"),
+        };
+        self.splat.add(surfaces, photons, radius)
+    }
+
+    /// Forgets all photons and their light: when the camera or what it sees has moved.
+    pub fn clear(&mut self) {
+        self.density.clear();
+        self.splat.clear();
+    }
+
+    /// Photons of each pixel.
+    #[must_use]
+    pub fn density(&self) -> &DensityMap {
+        self.density.map()
+    }
+
+    /// The radii of the last photons' kernels, if they are variable; undefined before the first.
+    #[must_use]
+    pub fn radii(&self) -> Option<&RadiusMap> {
+        self.radii.as_ref().map(RadiusPipeline::radii)
+    }
+
+    /// The light so far.
+    #[must_use]
+    pub fn irradiance(&self) -> &IrradianceMap {
+        self.splat.irradiance()
+    }
+
+    /// The stage that counts photons.
+    #[must_use]
+    pub fn density_stage(&self) -> &DensityStage {
+        &self.density
+    }
+
+    /// The settings that the pipeline was made with.
+    #[must_use]
+    pub fn settings(&self) -> &IrradianceSettings {
+        &self.settings
+    }
+}
+
+/// Every shader that photons become irradiance by, beside those of the radius map: density, splats and gathers of all kernels.
+#[must_use]
+pub fn shader_sources() -> Vec<ShaderSource> {
+    let mut sources = vec![density::source()];
+    for kernel in Kernel::ALL {
+        for fixed in [false, true] {
+            sources.extend(splat::sources(kernel, fixed));
+            sources.extend([false, true].map(|correct| splat::gather_source(kernel, fixed, correct)));
+        }
+    }
+    sources
+}
