@@ -120,6 +120,7 @@ pub mod photon;
 mod photon_point;
 pub mod pipeline;
 pub mod planner;
+mod position;
 mod radius;
 pub mod reference;
 #[cfg(feature = "render")]
@@ -152,6 +153,7 @@ pub use maps::{ChosenRadius, DensityMap, HostSurfaces, IrradianceMap, PhotonPoin
 pub use mask::{Mask, MaskMaker};
 pub use photon_point::PhotonPoint;
 pub use pipeline::RadiusPipeline;
+pub use position::{HostDepth, PositionMaker};
 pub use settings::Settings;
 pub use splat::{GatherStage, SplatStage};
 pub use view::View;

@@ -37,6 +37,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     ),
     ("planner", &["exactness"]),
     ("adaptive", &["exactness", "frame", "gl", "maps", "pipeline", "planner", "structure"]),
+    ("position", &["gl", "view"]),
     ("density", &["exactness", "gl", "maps"]),
     ("splat", &["density", "gl", "maps"]),
     ("irradiance", &["density", "frame", "gl", "maps", "pipeline", "splat"]),

@@ -290,6 +290,50 @@ impl Texture {
         Ok(Self { gl: gl.clone(), name, format, size, levels: 1, layers: None, ours: false })
     }
 
+    /// Wraps a texture with depth, of any depth format and of `size`, that stays the host's.
+    ///
+    /// # Errors
+    /// [`Error::Mismatch`] if it is none.
+    pub(crate) fn borrow_depth(gl: &Gl, name: glow::Texture, size: UVec2) -> Result<Self> {
+        let glow = gl.glow();
+        let expected = format!("a GL_TEXTURE_2D with depth, of {} x {}", size.x, size.y);
+        let mismatch = |got: String| {
+            let expected = expected.clone();
+            Error::Mismatch { what: "host's depth texture", expected, got }
+        };
+        // SAFETY: the context is current while the handle lives; a name of another target is an error that is asked for at
+        // once.
+        let [width, height, bits] = unsafe {
+            glow.active_texture(glow::TEXTURE0);
+            glow.bind_texture(glow::TEXTURE_2D, Some(name));
+            let code = glow.get_error();
+            if code != glow::NO_ERROR {
+                return Err(mismatch(format!(
+                    "a name that answers {} when bound there",
+                    super::error_name(code)
+                )));
+            }
+            [glow::TEXTURE_WIDTH, glow::TEXTURE_HEIGHT, glow::TEXTURE_DEPTH_SIZE]
+                .map(|parameter| glow.get_tex_level_parameter_i32(glow::TEXTURE_2D, 0, parameter))
+        };
+        if bits == 0 {
+            return Err(mismatch("one without depth".to_owned()));
+        }
+        if [width, height] != size.as_ivec2().to_array() {
+            return Err(mismatch(format!("{width} x {height}")));
+        }
+        // Whatever its bits, shaders read a float.
+        Ok(Self {
+            gl: gl.clone(),
+            name,
+            format: TextureFormat::Depth32Float,
+            size,
+            levels: 1,
+            layers: None,
+            ours: false,
+        })
+    }
+
     /// The same texture for another reader; `self` stays its owner.
     pub(crate) fn alias(&self) -> Self {
         Self { gl: self.gl.clone(), ours: false, ..*self }
@@ -475,10 +519,29 @@ fn format_name(internal: u32) -> String {
         glow::R16 => "GL_R16",
         glow::R16F => "GL_R16F",
         glow::R32I => "GL_R32I",
+        glow::R32UI => "GL_R32UI",
+        glow::R32F => "GL_R32F",
+        glow::R16UI => "GL_R16UI",
+        glow::R8UI => "GL_R8UI",
+        glow::RGB16F => "GL_RGB16F",
+        glow::RGB32F => "GL_RGB32F",
+        glow::DEPTH_COMPONENT32F => "GL_DEPTH_COMPONENT32F",
         glow::RGBA8 => "GL_RGBA8",
         glow::RGBA16F => "GL_RGBA16F",
         glow::RGBA32F => "GL_RGBA32F",
         glow::RGBA32UI => "GL_RGBA32UI",
+        glow::RGB8 => "GL_RGB8",
+        glow::RGB10_A2 => "GL_RGB10_A2",
+        glow::R11F_G11F_B10F => "GL_R11F_G11F_B10F",
+        glow::RG16F => "GL_RG16F",
+        glow::RG32F => "GL_RG32F",
+        glow::RGBA8_SNORM => "GL_RGBA8_SNORM",
+        glow::RGBA16_SNORM => "GL_RGBA16_SNORM",
+        glow::SRGB8_ALPHA8 => "GL_SRGB8_ALPHA8",
+        glow::DEPTH_COMPONENT16 => "GL_DEPTH_COMPONENT16",
+        glow::DEPTH_COMPONENT24 => "GL_DEPTH_COMPONENT24",
+        glow::DEPTH24_STENCIL8 => "GL_DEPTH24_STENCIL8",
+        glow::DEPTH32F_STENCIL8 => "GL_DEPTH32F_STENCIL8",
         _ => return format!("format {internal:#06x}"),
     };
     name.to_owned()

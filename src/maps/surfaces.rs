@@ -72,13 +72,7 @@ impl SurfaceMaps {
     /// # Errors
     /// [`Error::Mismatch`] if its size is another than that of the maps.
     pub fn set_view(&mut self, view: View) -> Result<()> {
-        if view.size() != self.size() {
-            return Err(Error::Mismatch {
-                what: "view",
-                expected: self.size().to_string(),
-                got: view.size().to_string(),
-            });
-        }
+        view.check_size(self.size())?;
         self.view = view;
         Ok(())
     }

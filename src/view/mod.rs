@@ -112,6 +112,15 @@ impl View {
         self.size
     }
 
+    /// Checks that maps of `size` go with it.
+    pub(crate) fn check_size(&self, size: UVec2) -> Result<()> {
+        if self.size == size {
+            return Ok(());
+        }
+        let in_words = |size: UVec2| format!("{} x {}", size.x, size.y);
+        Err(Error::Mismatch { what: "view", expected: in_words(size), got: in_words(self.size) })
+    }
+
     /// The pinhole, in scene units.
     #[must_use]
     pub fn position(&self) -> Vec3 {

@@ -13,6 +13,8 @@ mod faults;
 mod frames;
 mod host;
 #[cfg(feature = "render")]
+mod irradiance;
+#[cfg(feature = "render")]
 mod leaks;
 mod objects;
 #[cfg(feature = "render")]

@@ -15,7 +15,8 @@ use varikernel::settings::{
     Storage, Variation,
 };
 use varikernel::{
-    AdaptivePipeline, CountBounds, DensityMap, Gl, MaskMaker, RadiusPipeline, context, reference,
+    AdaptivePipeline, CountBounds, DensityMap, Gl, MaskMaker, PositionMaker, RadiusPipeline, context,
+    reference,
 };
 
 use crate::support::{random_map, search, working_candidates};
@@ -77,8 +78,10 @@ fn all_settings() -> Vec<Settings> {
 
 fn all_sources() -> Vec<ShaderSource> {
     let mut sources = BTreeMap::from(Unit::ALL.map(|unit| (unit.source().fragment(), unit.source())));
-    let mask = MaskMaker::shader_source();
-    sources.insert(mask.fragment(), mask);
+    let makers = [MaskMaker::shader_source(), PositionMaker::shader_source()];
+    for source in varikernel::irradiance::shader_sources().into_iter().chain(makers) {
+        sources.insert(source.vertex() + &source.fragment(), source);
+    }
     for settings in all_settings() {
         for format in [TextureFormat::R32Uint, TextureFormat::R32Float] {
             let census = AdaptivePipeline::shader_source(format, &Settings::default());

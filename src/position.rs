@@ -1,0 +1,88 @@
+//! A host's depth buffer to the places that its pixels show.
+//!
+//! - Cost: one pass, one fetch a pixel. Memory: 16 bytes a pixel.
+//! - Rounding: a depth of 24 bits or f32 places a surface at distance z to about 2^-24 z² / near along the line of sight, a 32-bit
+//!   reversed one to about 2^-24 z. Photons are looked for within half a pixel of the surface, so that near / far may be 10^-4 or
+//!   less; a depth of 16 bits is too coarse.
+
+use glam::UVec2;
+
+use crate::error::Result;
+use crate::gl::{Gl, Pass, Program, ShaderSource, StateGuard, Target, Texture, TextureFormat, glsl};
+use crate::view::View;
+
+const LABEL: &str = "positions from depth";
+
+/// A host's depth buffer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct HostDepth {
+    /// A GL_TEXTURE_2D with depth, with or without stencil, as drawn with the whole depth range from 0 to 1.
+    pub texture: glow::Texture,
+    /// Whether the far plane is at 0.
+    pub reversed: bool,
+    /// Whether depth in clip space goes from 0 to 1 instead of from -1 to 1: GL_ZERO_TO_ONE of glClipControl.
+    pub zero_to_one: bool,
+}
+
+/// Makes positions for [`HostSurfaces`](crate::HostSurfaces) out of depth.
+#[derive(Debug)]
+pub struct PositionMaker {
+    gl: Gl,
+    program: Program,
+    target: Target,
+}
+
+impl PositionMaker {
+    /// Allocates and compiles for maps of `size`.
+    ///
+    /// # Errors
+    /// [`Error::TooLarge`](crate::Error::TooLarge); [`Error::Shader`](crate::Error::Shader) if the driver refuses the shader;
+    /// [`Error::Gl`](crate::Error::Gl) when memory runs out.
+    pub fn new(gl: &Gl, size: UVec2) -> Result<Self> {
+        let _state = StateGuard::new(gl);
+        let texture = Texture::new(gl, TextureFormat::Rgba32Float, size, 1)?;
+        Ok(Self {
+            gl: gl.clone(),
+            program: Program::new(gl, &Self::shader_source())?,
+            target: Target::single(gl, texture)?,
+        })
+    }
+
+    /// The places that a depth buffer shows, drawn with the matrices of `view`: GL_RGBA32F, the depth along the view in the fourth
+    /// value, all 0 where the depth is that of the far plane.
+    ///
+    /// # Errors
+    /// [`Error::Mismatch`](crate::Error::Mismatch) unless the texture is a GL_TEXTURE_2D with depth, and it and the view have the size
+    /// of the maps; [`Error::Gl`](crate::Error::Gl) if the driver fails.
+    pub fn from_depth(&mut self, depth: HostDepth, view: &View) -> Result<glow::Texture> {
+        let _state = StateGuard::new(&self.gl);
+        let HostDepth { texture, reversed, zero_to_one } = depth;
+        let texture = Texture::borrow_depth(&self.gl, texture, self.target.size())?;
+        view.check_size(self.target.size())?;
+        let from_clip = view.to_clip().as_dmat4().inverse().as_mat4();
+        let (scale, shift) = if zero_to_one { (1.0, 0.0) } else { (2.0, 1.0) };
+        Pass::new(LABEL, &self.program)
+            .read("depth", &texture)
+            .set("from_clip", from_clip)
+            .set("camera", view.position())
+            .set("view_direction", view.direction())
+            .set("farthest", if reversed { 0.0 } else { 1.0 })
+            .set("depth_scale", scale)
+            .set("depth_shift", shift)
+            .fill(&mut self.target)?;
+        self.gl.check("finding positions")?;
+        Ok(self.texture())
+    }
+
+    /// The texture that [`from_depth`](Self::from_depth) fills.
+    #[must_use]
+    pub fn texture(&self) -> glow::Texture {
+        self.target.texture().name()
+    }
+
+    /// The shader.
+    #[must_use]
+    pub fn shader_source() -> ShaderSource {
+        ShaderSource::new(LABEL).file(glsl!("position.frag"))
+    }
+}
