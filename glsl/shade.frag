@@ -1,5 +1,7 @@
 // Indirect light from diffuse surfaces, and the whole picture: radiance towards the camera.
 uniform sampler2D irradiance;
+// What the irradiance is multiplied with: 1, or one over the parts that it was added up of.
+uniform float scale;
 uniform sampler2D albedo;
 // Radiance; a: 1 where the pixel shows a diffuse surface, 0 where it shows mirrors, glass, lights or nothing.
 uniform sampler2D direct;
@@ -15,7 +17,7 @@ void main()
     vec4 straight = texelFetch(direct, pixel, 0);
     vec3 reflectance = texelFetch(albedo, pixel, 0).rgb;
     // A diffuse surface sends its radiosity evenly into the half space.
-    vec3 reflected = straight.a * texelFetch(irradiance, pixel, 0).rgb * reflectance / 3.14159265;
+    vec3 reflected = straight.a * scale * texelFetch(irradiance, pixel, 0).rgb * reflectance / 3.14159265;
     indirect = vec4(reflected + texelFetch(seen_through, pixel, 0).rgb, 1.0);
     beauty = vec4(straight.rgb + indirect.rgb, 1.0);
 }

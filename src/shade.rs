@@ -56,18 +56,54 @@ impl ShadeStage {
         irradiance: &IrradianceMap,
         light: &TracedLight,
     ) -> Result<Shaded> {
+        self.set_light(&light.direct, &light.seen_through);
+        self.draw(surfaces, irradiance, 1.0)?;
+        self.read()
+    }
+
+    /// Takes in light as [`TracedLight`] holds it.
+    pub(crate) fn set_light(&mut self, direct: &Image<[f32; 4]>, seen_through: &Image<[f32; 4]>) {
         let _state = StateGuard::new(&self.gl);
-        self.direct.upload(&light.direct);
-        self.seen_through.upload(&light.seen_through);
+        self.direct.upload(direct);
+        self.seen_through.upload(seen_through);
+    }
+
+    /// Draws the picture with `scale` times the irradiance.
+    pub(crate) fn draw(
+        &mut self,
+        surfaces: &SurfaceMaps,
+        irradiance: &IrradianceMap,
+        scale: f32,
+    ) -> Result<()> {
+        let _state = StateGuard::new(&self.gl);
         Pass::new(LABEL, &self.program)
             .read("irradiance", irradiance.texture())
             .read("albedo", surfaces.albedo())
             .read("direct", &self.direct)
             .read("seen_through", &self.seen_through)
+            .set("scale", scale)
             .fill(&mut self.target)?;
+        self.gl.check("shading")
+    }
+
+    /// What was drawn, read back; waits for the GPU.
+    pub(crate) fn read(&self) -> Result<Shaded> {
+        let _state = StateGuard::new(&self.gl);
         let [beauty, indirect] = [0, 1].map(|plane: usize| self.target.textures()[plane].read(0));
-        self.gl.check("shading")?;
+        self.gl.check("reading a picture back")?;
         Ok(Shaded { beauty, indirect })
+    }
+
+    pub(crate) fn beauty(&self) -> &Texture {
+        self.target.texture()
+    }
+
+    pub(crate) fn indirect(&self) -> &Texture {
+        &self.target.textures()[1]
+    }
+
+    pub(crate) fn direct(&self) -> &Texture {
+        &self.direct
     }
 }
 

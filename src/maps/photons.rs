@@ -7,7 +7,7 @@ use crate::photon_point::PhotonPoint;
 
 /// Photons in a buffer: as many as the table of their areas has entries, and few enough that sums of one buffer's kernels
 /// stay exact to about 2^-9 (see `splat`).
-const CHUNK: usize = 1 << 16;
+const CHUNK: u32 = 1 << 16;
 
 /// Photons on the GPU.
 #[derive(Debug)]
@@ -33,9 +33,8 @@ impl PhotonPoints {
     /// [`Error::Mismatch`] if it is no buffer, or has no room for them; [`Error::Gl`] when names run out.
     pub fn borrow(gl: &Gl, buffer: glow::Buffer, count: u32) -> Result<Self> {
         let _state = StateGuard::new(gl);
-        let step = u32::try_from(CHUNK).expect("2^16");
-        let chunks = (0..count).step_by(CHUNK).map(|first| {
-            Vertices::borrow(gl, buffer, first, step.min(count - first), &PhotonPoint::ATTRIBUTES)
+        let chunks = (0..count).step_by(CHUNK as usize).map(|first| {
+            Vertices::borrow(gl, buffer, first, CHUNK.min(count - first), &PhotonPoint::ATTRIBUTES)
         });
         Ok(Self { gl: gl.clone(), chunks: chunks.collect::<Result<_>>()?, spare: Vec::new(), borrowed: true })
     }
@@ -47,7 +46,7 @@ impl PhotonPoints {
     pub fn upload(&mut self, photons: &[PhotonPoint]) -> Result<()> {
         self.check_ours()?;
         let _state = StateGuard::new(&self.gl);
-        for chunk in photons.chunks(CHUNK) {
+        for chunk in photons.chunks(CHUNK as usize) {
             let vertices = match self.spare.pop() {
                 Some(mut vertices) => vertices.replace(chunk).map(|()| vertices),
                 None => Vertices::upload(&self.gl, chunk, &PhotonPoint::ATTRIBUTES),

@@ -94,7 +94,7 @@ impl SurfaceMaps {
     /// # Errors
     /// [`Error::Gl`] if the driver fails.
     pub fn read_position(&self) -> Result<Image<[f32; 4]>> {
-        self.read(Some(&self.position))
+        Self::read(Some(&self.position))
     }
 
     /// Normals of length 1 towards the camera, and the surface's number: its index plus 1, negative for mirrors and glass,
@@ -103,7 +103,7 @@ impl SurfaceMaps {
     /// # Errors
     /// [`Error::Gl`] if the driver fails.
     pub fn read_normal(&self) -> Result<Image<[f32; 4]>> {
-        self.read(Some(&self.normal))
+        Self::read(Some(&self.normal))
     }
 
     /// Reflectance of diffuse surfaces, linear RGB from 0 to 1.
@@ -111,10 +111,10 @@ impl SurfaceMaps {
     /// # Errors
     /// [`Error::Gl`] if the driver fails; [`Error::Mismatch`] for a host's surfaces, which come without.
     pub fn read_albedo(&self) -> Result<Image<[f32; 4]>> {
-        self.read(self.albedo.as_ref())
+        Self::read(self.albedo.as_ref())
     }
 
-    fn read(&self, texture: Option<&Texture>) -> Result<Image<[f32; 4]>> {
+    fn read(texture: Option<&Texture>) -> Result<Image<[f32; 4]>> {
         let readable = texture.filter(|texture| texture.format() == TextureFormat::Rgba32Float);
         let Some(texture) = readable else {
             return Err(Error::Mismatch {

@@ -6,6 +6,7 @@
 mod direct;
 mod layers;
 mod light;
+mod live;
 mod nearest;
 mod reference;
 mod seen_through;
@@ -14,6 +15,7 @@ mod stages;
 mod traced;
 
 pub use layers::{Account, Layers};
+pub use live::{Inspection, Live, LiveSettings};
 pub use reference::Reference;
 pub use stages::Stages;
 pub use traced::first_hits;

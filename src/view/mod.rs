@@ -39,8 +39,9 @@ impl View {
 
         let forward = direction.as_dvec3();
         let right = forward.cross(camera.up.as_dvec3()).normalize();
-        let (side, half) = (f64::from(pixel_side), size.as_dvec2() / 2.0);
-        let (to_right, to_next_row) = (side * right, -side * right.cross(forward));
+        let half = size.as_dvec2() / 2.0;
+        let step = f64::from(pixel_side);
+        let (to_right, to_next_row) = (step * right, -step * right.cross(forward));
         let to_corner = forward - half.x * to_right - half.y * to_next_row;
         let position = camera.position;
         Self { size, to_clip, position, direction, pixel_side, to_corner, to_right, to_next_row }
@@ -68,7 +69,7 @@ impl View {
         let is_perspective = projection.row(3) == glam::Vec4::NEG_Z
             && columns[0][0] > 0.0
             && columns[1][1] != 0.0
-            && [columns[0][1], columns[1][0], columns[3][0], columns[3][1]] == [0.0; 4];
+            && [columns[0][1], columns[1][0], columns[3][0], columns[3][1]].iter().all(|&zero| zero == 0.0);
         if !is_perspective {
             return refuse(
                 "projection",

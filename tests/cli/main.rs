@@ -54,7 +54,7 @@ impl Workplace {
             .args(arguments.split_whitespace())
             .current_dir(self.folder.path())
             .env_remove("RUST_LOG")
-            .timeout(Duration::from_secs(180));
+            .timeout(Duration::from_mins(3));
         command
     }
 

@@ -16,6 +16,8 @@ mod host;
 mod irradiance;
 #[cfg(feature = "render")]
 mod leaks;
+#[cfg(feature = "render")]
+mod live;
 mod objects;
 #[cfg(feature = "render")]
 mod picture;

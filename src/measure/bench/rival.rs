@@ -166,6 +166,6 @@ mod tests {
             (runs, samples)
         };
         assert_eq!(runs_and_samples(Duration::ZERO), (1, 1));
-        assert_eq!(runs_and_samples(Duration::from_secs(60)), (8, 7));
+        assert_eq!(runs_and_samples(Duration::from_mins(1)), (8, 7));
     }
 }

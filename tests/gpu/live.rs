@@ -1,0 +1,180 @@
+//! A picture in the making is the renderer's after one step, and gets better.
+
+use std::sync::Arc;
+
+use glam::{UVec2, Vec3};
+use varikernel::measure::PictureError;
+use varikernel::photon::{Emission, PhotonPoint, TraceSettings, trace};
+use varikernel::render::{Live, LiveSettings, Renderer};
+use varikernel::scene::Scene;
+use varikernel::settings::{PictureSettings, RadiusChoice};
+use varikernel::{Error, Gl, Image};
+
+use crate::support::egl;
+
+const SIDE: u32 = 32;
+
+fn scene(name: &str) -> Arc<Scene> {
+    Arc::new(Scene::shipped(name).unwrap())
+}
+
+/// n = 50 and MR = 16 in a small picture, 2^13 photons a step.
+fn settings(scene: &Scene) -> LiveSettings {
+    let mut settings = LiveSettings::new(scene);
+    settings.size = UVec2::splat(SIDE);
+    settings.photons_per_step = 1 << 13;
+    settings.irradiance.search.search.min_photons = 50;
+    settings.irradiance.search.search.max_radius = 16;
+    settings
+}
+
+fn picture_settings(live: &LiveSettings) -> PictureSettings {
+    PictureSettings {
+        size: live.size,
+        min_photons: live.irradiance.search.search.min_photons,
+        max_radius: live.irradiance.search.search.max_radius,
+        radius: live.irradiance.radius,
+        kernel: live.irradiance.kernel,
+        light_samples: 16,
+        ..PictureSettings::default()
+    }
+}
+
+fn after(gl: &Gl, scene: &Arc<Scene>, settings: LiveSettings, steps: u32) -> Live {
+    let mut live = Live::new(gl, Arc::clone(scene), settings).unwrap();
+    for _ in 0..steps {
+        live.step().unwrap();
+    }
+    live
+}
+
+fn mean(image: &Image<[f32; 3]>) -> f64 {
+    let sum: f64 = image.values().iter().flatten().copied().map(f64::from).sum();
+    sum / f64::from(image.size().element_product())
+}
+
+#[test]
+fn one_step_has_the_indirect_light_of_the_renderer_to_the_last_bit() {
+    let gl = egl();
+    let scene = scene("cornell-boxes");
+    for radius in [RadiusChoice::Variable, RadiusChoice::Fixed(2)] {
+        let mut settings = settings(&scene);
+        settings.irradiance.radius = radius;
+        let live = after(&gl, &scene, settings, 1);
+        let trace_settings = TraceSettings {
+            photons: settings.photons_per_step,
+            bounces: 8,
+            seed: 1,
+            russian_roulette: false,
+        };
+        let (photons, _) = trace(&scene, &Emission::new(&scene, &trace_settings).unwrap());
+        let photons: Vec<_> =
+            photons.iter().filter(|photon| !photon.is_direct()).map(PhotonPoint::new).collect();
+        let picture = picture_settings(&settings);
+        let mut renderer = Renderer::with_photons(&gl, &scene, &picture, &photons).unwrap();
+        let (layers, _) = renderer.picture(&picture).unwrap();
+        // The number of photons is a power of two, so that scaling their power rounds nothing.
+        assert_eq!(live.read_indirect().unwrap(), layers.indirect, "{radius:?}");
+        assert!(mean(&layers.indirect) > 0.0);
+        assert_eq!(live.photons(), u64::from(settings.photons_per_step));
+    }
+}
+
+#[test]
+fn steps_converge_to_the_picture_of_many_photons_and_repeat_to_the_last_bit() {
+    let gl = egl();
+    let scene = scene("cornell-glass");
+    let settings = settings(&scene);
+    let (one, many) = (after(&gl, &scene, settings, 1), after(&gl, &scene, settings, 24));
+    let picture = picture_settings(&settings);
+    let trace = TraceSettings { photons: 1 << 18, ..TraceSettings::default() };
+    let many_photons = PictureSettings { min_photons: 200, ..picture };
+    let mut renderer = Renderer::new(&gl, &scene, &many_photons, &trace, &mut |_| ()).unwrap();
+    let (layers, _) = renderer.picture(&many_photons).unwrap();
+    let (of_one, of_many) = (one.read().unwrap(), many.read().unwrap());
+    let error = |image| PictureError::between(image, &layers.beauty).rmse;
+    assert!(error(&of_many) < 0.5 * error(&of_one), "{} {}", error(&of_one), error(&of_many));
+    let share = mean(&of_many) / mean(&layers.beauty);
+    assert!((share - 1.0).abs() < 0.02, "{share}");
+    assert_eq!(after(&gl, &scene, settings, 24).read().unwrap(), of_many);
+}
+
+#[test]
+fn steps_of_any_number_of_photons_weigh_as_their_photons_do() {
+    let gl = egl();
+    let scene = scene("cornell-empty");
+    let mut settings = settings(&scene);
+    let mut live = after(&gl, &scene, settings, 2);
+    let before = mean(&live.read_indirect().unwrap());
+    settings.photons_per_step = 1 << 10;
+    live.change(settings).unwrap();
+    assert_eq!(live.steps(), 2, "the budget changes nothing that is there");
+    live.step().unwrap();
+    assert_eq!((live.photons(), live.steps()), ((1 << 14) + (1 << 10), 3));
+    let after = mean(&live.read_indirect().unwrap());
+    // Weighed alike, a third of the light would come from the small step; its noise is some percent either way.
+    assert!((after / before - 1.0).abs() < 0.05, "{before} {after}");
+}
+
+#[test]
+fn changes_start_anew_what_they_change_and_a_refused_one_changes_nothing() {
+    let gl = egl();
+    let scene = scene("cornell-glass");
+    let usual = settings(&scene);
+    let mut live = after(&gl, &scene, usual, 2);
+    let before = live.read().unwrap();
+
+    let mut refused = usual;
+    refused.irradiance.search.search.max_radius = 1000;
+    assert!(matches!(live.change(refused), Err(Error::Setting { .. })));
+    let too_large = LiveSettings { size: UVec2::splat(gl.info().max_texture_size + 1), ..usual };
+    let too_few = LiveSettings { photons_per_step: 0, ..usual };
+    assert!(matches!(live.change(too_few), Err(Error::Setting { .. })));
+    assert!(matches!(live.change(too_large), Err(Error::TooLarge { .. })));
+    assert!(live.steps() == 2 && *live.settings() == usual);
+    assert_eq!(live.read().unwrap(), before);
+
+    let mut moved = usual;
+    moved.camera.position += Vec3::new(40.0, 0.0, 0.0);
+    moved.size = UVec2::new(40, 24);
+    live.change(moved).unwrap();
+    assert_eq!((live.steps(), live.photons()), (0, 0));
+    live.step().unwrap();
+    // Nothing of the old view is left.
+    let fresh = after(&gl, &scene, moved, 1);
+    assert_eq!(live.read().unwrap(), fresh.read().unwrap());
+    assert_eq!(live.read().unwrap().size(), UVec2::new(40, 24));
+
+    let mut wider = usual;
+    wider.irradiance.search.search.min_photons = 500;
+    live.change(wider).unwrap();
+    live.step().unwrap();
+    let fresh = after(&gl, &scene, wider, 1);
+    assert_eq!(live.read().unwrap(), fresh.read().unwrap());
+}
+
+#[test]
+fn a_pixel_says_why_its_radius_is_what_it_is() {
+    let gl = egl();
+    let scene = scene("cornell-boxes");
+    let settings = settings(&scene);
+    let search = settings.irradiance.search.search;
+    let mut live = after(&gl, &scene, settings, 2);
+    let (mut bounded, mut named) = (0, 0_u32);
+    for (x, y) in (1..SIDE).step_by(3).flat_map(|y| (1..SIDE).step_by(3).map(move |x| (x, y))) {
+        let inspection = live.inspect(UVec2::new(x, y)).unwrap();
+        let side = 2 * inspection.radius + 1;
+        // Where no edge is in reach, N(R) >= n > N(R - 1).
+        let inside = x.min(y).min(SIDE - 1 - x).min(SIDE - 1 - y) >= inspection.radius;
+        if inside && inspection.radius < search.max_radius {
+            assert!(inspection.within >= u64::from(search.min_photons), "{x}, {y}, {side}: {inspection:?}");
+            let smaller = inspection.within_smaller;
+            assert!(smaller.is_none_or(|within| within < u64::from(search.min_photons)), "{inspection:?}");
+            bounded += 1;
+        }
+        named += u32::from(inspection.surface.is_some());
+    }
+    // The box does not fill the picture.
+    assert!(bounded > 20 && named > 80, "{bounded} {named}");
+    assert!(live.inspect(UVec2::splat(SIDE)).is_err());
+}
