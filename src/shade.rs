@@ -77,7 +77,7 @@ impl ShadeStage {
     ) -> Result<()> {
         let _state = StateGuard::new(&self.gl);
         Pass::new(LABEL, &self.program)
-            .read("irradiance", irradiance.texture())
+            .read("irradiance", irradiance.as_texture())
             .read("albedo", surfaces.albedo())
             .read("direct", &self.direct)
             .read("seen_through", &self.seen_through)

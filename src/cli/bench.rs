@@ -202,7 +202,7 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
 }
 
 fn settings(args: &Args) -> BenchSettings {
-    let minute = Duration::from_secs(60);
+    let minute = Duration::from_mins(1);
     let short = if args.suite.is_some() { 3 * minute } else { minute };
     let protocol = match args.protocol.unwrap_or(ProtocolName::Short) {
         ProtocolName::Short => Protocol::within(args.budget.unwrap_or(short)),

@@ -5,7 +5,9 @@ use glam::{UVec2, Vec4};
 use glow::HasContext as _;
 
 use super::pass::{Pass, Target};
-use super::{Gl, Texture, TextureFormat, gl_error};
+use super::{Gl, gl_error};
+#[cfg(feature = "render")]
+use super::{Texture, TextureFormat};
 use crate::error::{Error, Result};
 
 /// Vertices of f32 attributes, on the GPU: one vertex each for points and triangles, one quad each for instances.

@@ -26,9 +26,9 @@ impl IrradianceMap {
         self.target.size()
     }
 
-    /// The name of the texture, to bind in the host's own shaders as a `sampler2D`.
+    /// The texture, to bind in the host's own shaders as a `sampler2D`.
     #[must_use]
-    pub fn name(&self) -> glow::Texture {
+    pub fn texture(&self) -> glow::Texture {
         self.target.texture().name()
     }
 
@@ -48,7 +48,8 @@ impl IrradianceMap {
         &mut self.target
     }
 
-    pub(crate) fn texture(&self) -> &Texture {
+    #[cfg(feature = "render")]
+    pub(crate) fn as_texture(&self) -> &Texture {
         self.target.texture()
     }
 }

@@ -291,7 +291,7 @@ fn positions_come_from_a_depth_buffer() {
         let host = HostSurfaces { position, normal: rgba32(&gl, &own.normal) };
         let surfaces = SurfaceMaps::borrow(&gl, view, host).unwrap();
         let found = surfaces.read_position().unwrap();
-        assert_eq!(found.at(20, 20), [0.0; 4]);
+        assert!(found.at(20, 20).iter().all(|&value| value == 0.0));
         let mut worst = 0.0_f32;
         for (index, (found, expected)) in found.values().iter().zip(own.position.values()).enumerate() {
             if index != 20 * SIDE as usize + 20 && expected[3] > 0.0 {

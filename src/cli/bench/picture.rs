@@ -36,7 +36,7 @@ pub(super) fn run(args: &Args) -> Result<Outcome> {
         check_writable(path)?;
     }
     let gl = context::open(&args.device)?;
-    let budget = args.budget.unwrap_or(Duration::from_secs(60));
+    let budget = args.budget.unwrap_or(Duration::from_mins(1));
     let usual = PictureSuite::default();
     let photons = args.photons.unwrap_or(usual.photons);
     let suite = PictureSuite { size: size.to_array(), photons, ..usual };
