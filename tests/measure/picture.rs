@@ -6,7 +6,8 @@ use assert_cmd::Command;
 use predicates::str::contains;
 use varikernel::measure::bench::{PictureReport, PictureSuite};
 
-const ROWS: [&str; 7] = ["points", "density", "radius", "splat-variable", "splat-fixed", "gather", "photons"];
+const ROWS: [&str; 8] =
+    ["copy", "points", "density", "radius", "splat-variable", "splat-fixed", "gather", "photons"];
 
 fn check(report: &PictureReport) {
     let names: Vec<_> = report.rows.iter().map(|row| row.name.as_str()).collect();
@@ -17,19 +18,22 @@ fn check(report: &PictureReport) {
         let is_splat = row.name.starts_with("splat");
         assert_eq!((row.fragments_per_photon.is_some(), row.ns_per_fragment.is_some()), (is_splat, is_splat));
         assert_eq!(row.point_passes.is_some(), row.name != "photons");
+        assert_eq!(row.copies.is_some(), row.name != "photons");
     }
     assert!(report.contributing > report.drawn / 2 && report.contributing <= report.drawn, "{report:?}");
     // Each row is told in the unit, and each target from its row.
-    let (unit, density) = (&report.rows[0], &report.rows[1]);
+    let (copy, unit, density) = (&report.rows[0], &report.rows[1], &report.rows[2]);
     let ratio = density.statistics.median_ms / unit.statistics.median_ms;
     let [against_points, traced] = report.targets.as_slice() else { panic!("{:?}", report.targets) };
-    assert_eq!(unit.point_passes, Some(1.0));
+    assert_eq!((copy.copies, unit.point_passes), (Some(1.0), Some(1.0)));
+    let copies = density.statistics.median_ms / copy.statistics.median_ms;
+    assert!((density.copies.unwrap() / copies - 1.0).abs() < 1e-9);
     assert!((against_points.measured.unwrap() / ratio - 1.0).abs() < 1e-9);
     assert_eq!(against_points.holds, ratio <= 6.0);
-    let seconds = report.rows[6].statistics.median_ms / 1e3 / (f64::from(report.suite.photons) / 1e6);
+    let seconds = report.rows[7].statistics.median_ms / 1e3 / (f64::from(report.suite.photons) / 1e6);
     assert!((traced.measured.unwrap() - seconds).abs() < 1e-9, "{traced:?}");
     // A disc of radius 2 covers some 25 pixels, more as a quad around it.
-    let fixed = report.rows[4].fragments_per_photon.unwrap();
+    let fixed = report.rows[5].fragments_per_photon.unwrap();
     assert!((25.0..250.0).contains(&fixed), "{fixed}");
 }
 

@@ -69,13 +69,15 @@ fn print(report: &PictureReport) -> Result<()> {
     ));
     facts.push(("radii", format!("n {min_photons}, MR {max_radius}; fixed {fixed}")));
     output::print_facts(&facts)?;
-    let mut table = new_table(&["stage", "ms", "point passes", "fragments", "ns each", "samples", "answer"]);
-    align_right(&mut table, 1..=5);
+    let mut table =
+        new_table(&["stage", "ms", "copies", "point passes", "fragments", "ns each", "samples", "answer"]);
+    align_right(&mut table, 1..=6);
     for row in &report.rows {
         let number = |value: Option<f64>| value.map_or_else(String::new, three_digits);
         table.add_row([
             row.name.clone(),
             three_digits(row.statistics.median_ms),
+            number(row.copies),
             number(row.point_passes),
             number(row.fragments_per_photon),
             number(row.ns_per_fragment),
@@ -85,7 +87,8 @@ fn print(report: &PictureReport) -> Result<()> {
     }
     output::print(&table.trim_fmt())?;
     output::print(
-        "\nms: median time. point passes: ms over those of the photons drawn as points.\n\
+        "\nms: median time. copies: ms over that of a full-screen pass that copies one texel.\n\
+         point passes: ms over that of the photons drawn as points.\n\
          fragments: for each contributing photon, and their time.",
     )
 }

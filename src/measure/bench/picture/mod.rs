@@ -2,6 +2,7 @@
 //!
 //! | row | what is timed |
 //! |---|---|
+//! | `copy` | a full-screen pass that reads and writes one texel: the other unit |
 //! | `points` | every photon as a point, nothing read: the unit |
 //! | `density` | the photons that contribute, counted, and their power added up |
 //! | `radius` | the radius map of those counts: a table and a search |
@@ -65,6 +66,9 @@ pub struct PictureRow {
     pub suspect: Vec<usize>,
     /// The median in point-only passes of this run; none on the CPU, or if the points are wrong.
     pub point_passes: Option<f64>,
+    /// The median in copies of this run; none on the CPU, or if the copies are wrong.
+    #[serde(default)]
+    pub copies: Option<f64>,
     /// Fragments that a splat drew for each photon that contributes.
     pub fragments_per_photon: Option<f64>,
     /// The median over all fragments.
@@ -138,9 +142,13 @@ impl PictureSuite {
             found.extend(row(work, &samples[index], software, right[index], rows));
         }
         // A wrong unit gives no ratios.
-        let unit = found.first().filter(|row| row.right).map(|row| row.statistics.median_ms);
-        let points = unit.filter(|&unit| unit > 0.0);
+        let unit = |work: Work| {
+            let row = found.iter().find(|row| row.name == work.name() && row.right)?;
+            Some(row.statistics.median_ms).filter(|&median| median > 0.0)
+        };
+        let (copy, points) = (unit(Work::Copy), unit(Work::Points));
         for row in found.iter_mut().filter(|row| row.name != Work::Photons.name()) {
+            row.copies = copy.map(|unit| row.statistics.median_ms / unit);
             row.point_passes = points.map(|unit| row.statistics.median_ms / unit);
         }
         PictureReport {
@@ -192,6 +200,7 @@ fn row(work: Work, samples: &[Sample], software: bool, right: bool, rows: &Rows<
         wall_ms: samples.iter().map(|sample| milliseconds(sample.wall)).collect(),
         suspect: suspects.map(|(index, _)| index).collect(),
         point_passes: None,
+        copies: None,
         fragments_per_photon: fragments.map(|all| all / rows.contributing_or_one()),
         ns_per_fragment: fragments.map(|all| statistics.median_ms * 1e6 / all.max(1.0)),
         right,

@@ -5,9 +5,11 @@ use std::time::Instant;
 use glam::UVec2;
 
 use crate::error::{Error, Result};
+use crate::exactness::CountBounds;
 use crate::gl::{Gl, Sample, Timer};
 use crate::image::Image;
-use crate::measure::PointPass;
+use crate::maps::DensityMap;
+use crate::measure::{PointPass, Unit, UnitPass};
 use crate::photon::{Emission, Ends, PhotonPoint, TraceSettings, trace_in_batches};
 use crate::reference::{self, Shown};
 use crate::render::{Renderer, Stages};
@@ -23,9 +25,13 @@ const SAMPLED: u32 = 61;
 /// What a splat may lose or gain of its photons' power, as a share.
 const ENERGY: f64 = 1e-4;
 
+/// Copies of a sample, whose mean counts: one alone is over too soon for a clock.
+const COPIES: u32 = 16;
+
 /// A stage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Work {
+    Copy,
     Points,
     Density,
     Radius,
@@ -36,8 +42,9 @@ pub(super) enum Work {
 }
 
 impl Work {
-    /// All of them, the unit first.
-    pub(super) const ALL: [Self; 7] = [
+    /// All of them, the units first.
+    pub(super) const ALL: [Self; 8] = [
+        Self::Copy,
         Self::Points,
         Self::Density,
         Self::Radius,
@@ -49,6 +56,7 @@ impl Work {
 
     pub(super) fn name(self) -> &'static str {
         match self {
+            Self::Copy => "copy",
             Self::Points => "points",
             Self::Density => "density",
             Self::Radius => "radius",
@@ -65,6 +73,9 @@ pub(super) struct Rows<'a> {
     scene: &'a Scene,
     trace: TraceSettings,
     settings: PictureSettings,
+    copy: UnitPass,
+    /// What is copied: the definition's counts.
+    copied: DensityMap,
     points: PointPass,
     stages: Stages,
     /// What is drawn, for the definitions.
@@ -94,8 +105,25 @@ impl<'a> Rows<'a> {
         let surfaces = stages.surfaces();
         let (position, normal) = (surfaces.read_position()?, surfaces.read_normal()?);
         let shown = Shown { view, position, normal };
+        let counts = reference::photon_density(&shown, &seen);
+        let copied = DensityMap::upload(gl, &counts, CountBounds::total_at_most(seen.len() as u64))?;
+        let copy = UnitPass::new(gl, Unit::Copy, size)?;
         let (fragments, drawn) = ([0.0; 2], seen.len() as u64);
-        Ok(Self { scene, trace, settings, points, stages, seen, shown, fragments, drawn, contributing: 0 })
+        let contributing = 0;
+        Ok(Self {
+            scene,
+            trace,
+            settings,
+            copy,
+            copied,
+            points,
+            stages,
+            seen,
+            shown,
+            fragments,
+            drawn,
+            contributing,
+        })
     }
 
     /// n, MR and the fixed radius.
@@ -106,6 +134,9 @@ impl<'a> Rows<'a> {
     pub(super) fn run(&mut self, timer: &mut Timer, work: Work) -> Result<Sample> {
         let stages = &mut self.stages;
         let result = match work {
+            Work::Copy => timer.time(|| (0..COPIES).try_for_each(|_| self.copy.run(&self.copied))).map(
+                |((), Sample { query, wall })| ((), Sample { query: query / COPIES, wall: wall / COPIES }),
+            ),
             Work::Points => timer.time(|| self.points.run(stages.photons())),
             Work::Density => timer.time(|| stages.count()),
             Work::Radius => timer.time(|| stages.search()),
@@ -126,10 +157,11 @@ impl<'a> Rows<'a> {
     /// Runs a row untimed, after all rows before it. Whether its answer is right.
     pub(super) fn warm_up(&mut self, timer: &mut Timer, work: Work) -> Result<bool> {
         let total = |counts: &Image<f32>| counts.values().iter().map(|&count| f64::from(count)).sum::<f64>();
-        if matches!(work, Work::Points | Work::Density | Work::Radius) {
+        if matches!(work, Work::Copy | Work::Points | Work::Density | Work::Radius) {
             self.run(timer, work)?;
         }
         Ok(match work {
+            Work::Copy => self.copy.read()? == reference::photon_density(&self.shown, &self.seen),
             Work::Points => (total(&self.points.read()?) - self.drawn_as_f64()).abs() <= self.strays(),
             Work::Density => {
                 let counts = self.stages.read_counts()?;
