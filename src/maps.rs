@@ -38,7 +38,7 @@ impl DensityMap {
     /// [`Error::TooLarge`]; [`Error::Gl`] when memory runs out.
     pub fn upload(gl: &Gl, counts: &Image<u32>, bounds: CountBounds) -> Result<Self> {
         let _state = StateGuard::new(gl);
-        let texture = Texture::new(gl, TextureFormat::R32Uint, counts.size(), 1)?;
+        let texture = Texture::new(gl, TextureFormat::R32Uint, counts.size(), 1)?.labelled("density map");
         texture.upload(counts);
         gl.check("uploading a density map")?;
         Ok(Self { texture, bounds })
@@ -115,7 +115,7 @@ impl RadiusMap {
         if limited_mask {
             textures.push(Texture::new(gl, TextureFormat::R8Uint, size, 1)?);
         }
-        Ok(Self { target: Target::new(gl, textures)? })
+        Ok(Self { target: Target::new(gl, textures)?.labelled(&["radius map", "limited pixels"]) })
     }
 
     /// Uses radii that the host found by itself, and the GL_R8UI mask of limited pixels if it has one, to be certified;
@@ -139,7 +139,7 @@ impl RadiusMap {
                 });
             }
         }
-        Ok(Self { target: Target::new(gl, textures)? })
+        Ok(Self { target: Target::new(gl, textures)?.labelled(&["host's radius map"]) })
     }
 
     /// Columns and rows.

@@ -30,7 +30,7 @@ impl PhotonPoints {
     pub fn upload(&mut self, photons: &[PhotonPoint]) -> Result<()> {
         let _state = StateGuard::new(&self.gl);
         for chunk in photons.chunks(CHUNK) {
-            self.chunks.push(Vertices::upload(&self.gl, chunk, &[3, 3, 3, 1])?);
+            self.chunks.push(Vertices::upload(&self.gl, chunk, &[3, 3, 3, 1])?.labelled("photons"));
         }
         Ok(())
     }

@@ -18,7 +18,8 @@ impl SurfaceMaps {
     /// Empty maps.
     pub(crate) fn new(gl: &Gl, view: View) -> Result<Self> {
         let plane = || Texture::new(gl, TextureFormat::Rgba32Float, view.size(), 1);
-        Ok(Self { target: Target::with_depth(gl, vec![plane()?, plane()?, plane()?])?, view })
+        let target = Target::with_depth(gl, vec![plane()?, plane()?, plane()?])?;
+        Ok(Self { target: target.labelled(&["positions", "normals", "albedo"]), view })
     }
 
     /// The camera and the size.

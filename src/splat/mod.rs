@@ -64,8 +64,8 @@ impl SplatStage {
             covered: Program::new(gl, &covered)?,
             spread: Program::new(gl, &spread)?,
             addition: Program::new(gl, &addition)?,
-            table: Target::single(gl, table)?,
-            of_chunk: Target::single(gl, of_chunk)?,
+            table: Target::single(gl, table)?.labelled(&[COVERED]),
+            of_chunk: Target::single(gl, of_chunk)?.labelled(&[SPREAD]),
             irradiance: IrradianceMap::new(gl, size)?,
         })
     }
