@@ -79,7 +79,8 @@ impl MaskMaker {
     /// [`Error::TooLarge`]; [`Error::Shader`] if the driver refuses the shader; [`Error::Gl`] when memory runs out.
     pub fn new(gl: &Gl, size: UVec2) -> Result<Self> {
         let _state = StateGuard::new(gl);
-        let target = Target::single(gl, Texture::new(gl, TextureFormat::R8Uint, size, 1)?)?.labelled(&[TESTED]);
+        let target =
+            Target::single(gl, Texture::new(gl, TextureFormat::R8Uint, size, 1)?)?.labelled(&[TESTED]);
         let mask = Mask::borrow(gl, target.texture().name())?;
         Ok(Self { gl: gl.clone(), program: Program::new(gl, &Self::shader_source())?, target, mask })
     }

@@ -44,9 +44,12 @@ pub(crate) fn fill_where(
     target: &mut Target,
 ) -> Result<()> {
     let _state = StateGuard::new(gl);
-    let _tests = StateGuard::of_tests(gl);
     target.clear(&[0]);
     attach(gl, target, texture, test)?;
+    let tests = match test {
+        FragmentTest::Stencil { .. } => StateGuard::of_stencil_tests(gl),
+        FragmentTest::Depth { .. } => StateGuard::of_depth_tests(gl),
+    };
     // SAFETY: the context is current while the handle lives.
     unsafe {
         let glow = gl.glow();
@@ -69,6 +72,7 @@ pub(crate) fn fill_where(
         }
     }
     let drawn = pass.fill(target);
+    drop(tests);
     // SAFETY: the framebuffer is bound by the pass, or by `attach`.
     unsafe { detach(gl, test) };
     drawn

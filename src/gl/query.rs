@@ -65,7 +65,9 @@ impl Query {
             glow::NO_ERROR => Ok(()),
             // The name is of this kind and not running, so that only another one can be in the way.
             glow::INVALID_OPERATION => Err(Error::QueryRunning { kind: self.kind() }),
-            _ => Err(Error::Gl { code: error_name(code), what: format!("beginning a {} query", self.kind()) }),
+            _ => {
+                Err(Error::Gl { code: error_name(code), what: format!("beginning a {} query", self.kind()) })
+            }
         }
     }
 

@@ -10,8 +10,10 @@ mod certificate;
 mod density;
 mod exactness;
 mod faults;
+mod frame_path;
 mod frames;
 mod host;
+mod labels;
 #[cfg(feature = "render")]
 mod leaks;
 mod objects;

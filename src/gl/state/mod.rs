@@ -4,7 +4,7 @@ mod table;
 
 pub(super) use table::{DRAW_BUFFERS, UNITS};
 
-use table::{PASSES, Row, TESTS, Values};
+use table::{DEPTH_TESTS, PASSES, Row, STENCIL_TESTS, Values};
 
 use super::Gl;
 
@@ -59,9 +59,15 @@ impl StateGuard {
         Self { gl: gl.clone(), rows: PASSES, before }
     }
 
-    /// Saves the host's stencil test and depth range, inside of a guard of the rest.
-    pub(super) fn of_tests(gl: &Gl) -> Self {
-        Self { gl: gl.clone(), rows: TESTS, before: Before::of(gl, TESTS) }
+    /// Saves what a test of the host's depth touches, inside of a guard of the rest.
+    pub(super) fn of_depth_tests(gl: &Gl) -> Self {
+        Self { gl: gl.clone(), rows: DEPTH_TESTS, before: Before::of(gl, DEPTH_TESTS) }
+    }
+
+    /// Saves what a test of the host's stencil touches, inside of a guard of the rest, while a framebuffer with stencil is
+    /// drawn to.
+    pub(super) fn of_stencil_tests(gl: &Gl) -> Self {
+        Self { gl: gl.clone(), rows: STENCIL_TESTS, before: Before::of(gl, STENCIL_TESTS) }
     }
 }
 
@@ -117,6 +123,10 @@ mod tests {
 
     use super::*;
 
+    fn all() -> impl Iterator<Item = &'static Row> {
+        PASSES.iter().chain(DEPTH_TESTS).chain(STENCIL_TESTS)
+    }
+
     /// The names in backticks that start with GL_, of the section "What is touched".
     fn named(page: &str) -> BTreeSet<&str> {
         let section = page.split("\n# What is touched").nth(1).expect("the section is there");
@@ -127,7 +137,7 @@ mod tests {
     #[test]
     fn the_page_names_what_the_table_holds_and_nothing_else() {
         let page = include_str!("../state_contract.md");
-        let table: BTreeSet<_> = PASSES.iter().chain(TESTS).flat_map(|row| row.names).copied().collect();
+        let table: BTreeSet<_> = all().flat_map(|row| row.names).copied().collect();
         assert_eq!(named(page), table);
         let without = page.replace("`GL_CULL_FACE`", "faces");
         assert_ne!(named(&without), table, "a name that is left out is seen");
@@ -135,7 +145,6 @@ mod tests {
 
     #[test]
     fn only_the_viewport_has_no_default_and_only_alignments_differ_from_it() {
-        let all = || instances(PASSES).chain(instances(TESTS)).map(|(row, _)| row);
         let without: Vec<_> = all().filter(|row| row.default.is_none()).flat_map(|row| row.names).collect();
         assert_eq!(without, [&"GL_VIEWPORT"]);
         let differ = all().filter(|row| row.relied_on.is_some() && row.relied_on != row.default);

@@ -2,7 +2,7 @@
 //!
 //! Saving, putting back and setting defaults all go through it, and its names are those of the page
 //! [`state_contract`](crate::gl::state_contract), which a test compares. The stencil test needs no change but for
-//! [`TESTS`], since the framebuffers drawn to have no such buffer; multisampling likewise.
+//! masks, since the framebuffers drawn to have no such buffer; multisampling likewise.
 
 use std::num::NonZeroU32;
 
@@ -23,7 +23,8 @@ pub(super) type Values = [i32; 4];
 pub(super) struct Row {
     /// The enums by which the driver is asked for it.
     parameters: &'static [u32],
-    /// Their names.
+    /// Their names, for the comparison with the page.
+    #[cfg(test)]
     pub(super) names: &'static [&'static str],
     setting: Setting,
     /// How many there are of it.
@@ -68,6 +69,7 @@ macro_rules! row {
     ($setting:expr, [$($name:ident),+], $default:expr, $relied_on:expr, $instances:expr) => {
         Row {
             parameters: &[$(glow::$name),+],
+            #[cfg(test)]
             names: &[$(concat!("GL_", stringify!($name))),+],
             setting: $setting,
             instances: $instances,
@@ -110,7 +112,7 @@ const fn integer(value: i32) -> Option<Values> {
 }
 
 /// What every public call touches. It is read from the first row to the last, and put back from the last to the first.
-pub(super) const PASSES: &[Row] = &[
+pub(super) static PASSES: &[Row] = &[
     // First, since asking for what a unit holds changes it.
     row!(Setting::ActiveTexture, [ACTIVE_TEXTURE], enums([glow::TEXTURE0]), None),
     row!(
@@ -182,8 +184,16 @@ pub(super) const PASSES: &[Row] = &[
     row!(Setting::PixelStore, [UNPACK_SWAP_BYTES], integer(0), integer(0)),
 ];
 
-/// What masks made of a host's depth or stencil buffer touch besides.
-pub(super) const TESTS: &[Row] = &[
+/// What masks made of a host's depth buffer touch besides.
+pub(super) static DEPTH_TESTS: &[Row] = &[
+    row!(Setting::Capability, [STENCIL_TEST], OFF, None),
+    row!(Setting::DepthRange, [DEPTH_RANGE], Some([0, 1_f32.to_bits().cast_signed(), 0, 0]), None),
+];
+
+/// What masks made of a host's stencil buffer touch besides.
+///
+/// A driver tells the reference as far as the framebuffer that is drawn to has bits for it: it has to be one of a stencil.
+pub(super) static STENCIL_TESTS: &[Row] = &[
     row!(Setting::Capability, [STENCIL_TEST], OFF, None),
     row!(
         Setting::StencilFunction(glow::FRONT),
@@ -207,12 +217,6 @@ pub(super) const TESTS: &[Row] = &[
         Setting::StencilOperation(glow::BACK),
         [STENCIL_BACK_FAIL, STENCIL_BACK_PASS_DEPTH_FAIL, STENCIL_BACK_PASS_DEPTH_PASS],
         enums([glow::KEEP; 3]),
-        None
-    ),
-    row!(
-        Setting::DepthRange,
-        [DEPTH_RANGE],
-        Some([0, 1_f32.to_bits().cast_signed(), 0, 0]),
         None
     ),
 ];
