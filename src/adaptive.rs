@@ -49,9 +49,9 @@ impl AdaptivePipeline {
             pipeline,
             map_size: size,
             program: Program::new(gl, &census_source(density_format, &choice.settings))?,
-            counts: Target::single(gl, texture)?,
+            counts: Target::single(gl, texture)?.labelled(&[CENSUS]),
             census: None,
-            readback: Readback::new(gl)?,
+            readback: Readback::new(gl, CENSUS)?,
             choice,
         };
         gl.check("setting up an adaptive pipeline")?;

@@ -138,7 +138,8 @@ impl Certifier {
             with_limited,
             radii: Program::new(gl, &radii_source(*density_format, settings, with_limited))?,
             entries: Program::new(gl, &entries_source(*density_format, settings))?,
-            target: Target::single(gl, Texture::new(gl, TextureFormat::R8Uint, size, 1)?)?,
+            target: Target::single(gl, Texture::new(gl, TextureFormat::R8Uint, size, 1)?)?
+                .labelled(&["certificate"]),
             unproved: Query::of_fragments(gl)?,
         })
     }

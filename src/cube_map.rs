@@ -68,9 +68,9 @@ impl CubeMap {
         Ok(Self {
             gl: gl.clone(),
             programs,
-            triangles: Vertices::upload(gl, &corners(scene), &[3, 3, 3, 1])?,
-            spheres: Vertices::upload(gl, &cubes(scene), &[3, 3, 3, 1, 1])?,
-            map: Target::with_depth(gl, vec![map])?,
+            triangles: Vertices::upload(gl, &corners(scene), &[3, 3, 3, 1])?.labelled(TRIANGLES),
+            spheres: Vertices::upload(gl, &cubes(scene), &[3, 3, 3, 1, 1])?.labelled(SPHERES),
+            map: Target::with_depth(gl, vec![map])?.labelled(&["cube map"]),
             fov_degrees: 2.0 * wider.atan().to_degrees(),
             centre: min.midpoint(max),
             extent,

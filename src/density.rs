@@ -46,7 +46,7 @@ impl DensityStage {
             Texture::new(gl, TextureFormat::R32Float, size, 1)?,
             Texture::new(gl, TextureFormat::Rgba32Float, size, 1)?,
         ];
-        let mut target = Target::new(gl, textures)?;
+        let mut target = Target::new(gl, textures)?.labelled(&["density map", "power of photons"]);
         target.clear_floats(&[Vec4::ZERO; 2]);
         let map = DensityMap::of_stage(target.texture());
         Ok(Self { gl: gl.clone(), program: Program::new(gl, &source())?, target, map, read: (0, 0) })

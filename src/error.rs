@@ -105,6 +105,16 @@ pub enum Error {
         what: String,
     },
 
+    /// A call that counts or times by a query of its own, while one of that kind is running, which goes on undisturbed.
+    #[error(
+        "a {kind} query is running, and OpenGL has one at a time\n\
+         help: end it before gl::Timer (GL_TIME_ELAPSED) or a certificate (GL_SAMPLES_PASSED), or leave those out"
+    )]
+    QueryRunning {
+        /// The name of the GL enum.
+        kind: &'static str,
+    },
+
     /// No context could be made on any device that was tried.
     #[error("{0}")]
     NoContext(String),

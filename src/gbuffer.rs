@@ -62,8 +62,8 @@ impl SurfaceStage {
     pub(crate) fn draw(&self, scene: &Scene, view: View) -> Result<SurfaceMaps> {
         let _state = StateGuard::new(&self.gl);
         let mut maps = SurfaceMaps::new(&self.gl, view)?;
-        let triangles = Vertices::upload(&self.gl, &corners(scene), &[3, 3, 3, 1])?;
-        let spheres = Vertices::upload(&self.gl, &cubes(scene), &[3, 3, 3, 1, 1])?;
+        let triangles = Vertices::upload(&self.gl, &corners(scene), &[3, 3, 3, 1])?.labelled(TRIANGLES);
+        let spheres = Vertices::upload(&self.gl, &cubes(scene), &[3, 3, 3, 1, 1])?.labelled(SPHERES);
         maps.target().clear_floats(&[Vec4::ZERO; 3]);
         for (label, program, vertices) in
             [(TRIANGLES, &self.triangles, &triangles), (SPHERES, &self.spheres, &spheres)]

@@ -67,19 +67,9 @@
 //! | [`settings`], [`image`], [`error`] | plain data that every module may name |
 //!
 //! # The host's OpenGL state
-//! Each public call puts back what it touches, also when it fails:
-//!
-//! - the current program, vertex array and array buffer, draw and read framebuffer, and the viewport;
-//! - the active texture unit, and the 2D texture, the 2D array texture and the sampler of units 0 to 3;
-//! - blending and the colour mask of draw buffers 0 to 7, the blend functions and equations;
-//! - the depth test with its function and mask, depth clamping, polygon offset, and the size of points from programs;
-//! - face culling, scissor test, logic operation, rasteriser discard, primitive restart, clip distances 0 to 7, polygon mode;
-//! - the pixel pack and unpack buffers, and alignment, row length, skips and byte swapping of both;
-//! - by [`MaskMaker`] alone: the depth and the stencil test, their functions and operations, depth mask and range.
-//!
-//! Nothing else is touched. GL errors that were pending are taken and logged, so that they are not blamed on the call. A host
-//! may not call while transform feedback or conditional rendering is active, which would swallow the draws; a host's own
-//! queries (samples passed, time elapsed) count our work as well. Objects may be dropped in any order while the context is current.
+//! Each public call puts back what it touches, also when it fails; or, under [`StatePolicy::Defaults`], it starts from
+//! OpenGL's default state, leaves it behind, and asks the driver for nothing. The page [`gl::state_contract`] lists all
+//! that is touched, and says what has to be current, what contexts share, and what of a host's queries.
 //!
 //! # Glossary
 //! | word | meaning |
@@ -146,7 +136,7 @@ pub use density::DensityStage;
 pub use error::{Error, Result};
 pub use exactness::CountBounds;
 pub use frame::{Changed, Frame};
-pub use gl::Gl;
+pub use gl::{Gl, StatePolicy};
 pub use image::Image;
 pub use irradiance::IrradiancePipeline;
 pub use maps::{ChosenRadius, DensityMap, HostSurfaces, IrradianceMap, PhotonPoints, RadiusMap, SurfaceMaps};

@@ -32,7 +32,7 @@ impl DensityMap {
     /// [`Error::TooLarge`]; [`Error::Gl`] when memory runs out.
     pub fn upload(gl: &Gl, counts: &Image<u32>, bounds: CountBounds) -> Result<Self> {
         let _state = StateGuard::new(gl);
-        let texture = Texture::new(gl, TextureFormat::R32Uint, counts.size(), 1)?;
+        let texture = Texture::new(gl, TextureFormat::R32Uint, counts.size(), 1)?.labelled("density map");
         texture.upload(counts);
         gl.check("uploading a density map")?;
         Ok(Self { texture, bounds })
@@ -124,7 +124,7 @@ impl RadiusMap {
         if limited_mask {
             textures.push(Texture::new(gl, TextureFormat::R8Uint, size, 1)?);
         }
-        Ok(Self { target: Target::new(gl, textures)? })
+        Ok(Self { target: Target::new(gl, textures)?.labelled(&["radius map", "limited pixels"]) })
     }
 
     /// Uses radii that the host found by itself, and the GL_R8UI mask of limited pixels if it has one, to be certified;
@@ -148,7 +148,7 @@ impl RadiusMap {
                 });
             }
         }
-        Ok(Self { target: Target::new(gl, textures)? })
+        Ok(Self { target: Target::new(gl, textures)?.labelled(&["host's radius map"]) })
     }
 
     /// Columns and rows.

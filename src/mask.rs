@@ -27,7 +27,7 @@ impl Mask {
     /// [`Error::TooLarge`]; [`Error::Gl`] when memory runs out.
     pub fn upload(gl: &Gl, mask: &Image<u8>) -> Result<Self> {
         let _state = StateGuard::new(gl);
-        let texture = Texture::new(gl, TextureFormat::R8Uint, mask.size(), 1)?;
+        let texture = Texture::new(gl, TextureFormat::R8Uint, mask.size(), 1)?.labelled("mask");
         texture.upload(mask);
         gl.check("uploading a mask")?;
         Ok(Self { texture })
@@ -79,7 +79,8 @@ impl MaskMaker {
     /// [`Error::TooLarge`]; [`Error::Shader`] if the driver refuses the shader; [`Error::Gl`] when memory runs out.
     pub fn new(gl: &Gl, size: UVec2) -> Result<Self> {
         let _state = StateGuard::new(gl);
-        let target = Target::single(gl, Texture::new(gl, TextureFormat::R8Uint, size, 1)?)?;
+        let target =
+            Target::single(gl, Texture::new(gl, TextureFormat::R8Uint, size, 1)?)?.labelled(&[TESTED]);
         let mask = Mask::borrow(gl, target.texture().name())?;
         Ok(Self { gl: gl.clone(), program: Program::new(gl, &Self::shader_source())?, target, mask })
     }

@@ -18,7 +18,7 @@ use crate::structure::{self, Structure};
 ///
 /// Everything is allocated and compiled by [`RadiusPipeline::new`]; [`render`](Self::render) only draws. Each call
 /// puts back the OpenGL state that it touches, also when it fails; the list is the crate's
-/// [state contract](crate#the-hosts-opengl-state).
+/// [state contract](crate::gl::state_contract).
 #[derive(Debug)]
 pub struct RadiusPipeline {
     gl: Gl,
@@ -254,7 +254,8 @@ impl RadiusPipeline {
     ///
     /// # Errors
     /// As [`search`](Self::search); [`Error::Mismatch`] also for a pipeline with masks and for photons that were added;
-    /// [`Error::Setting`] unless the method is the summed-area table; [`Error::Inexact`] also where [`Settings::exactness`] waives it; [`Error::Gl`] while a query of the host counts samples.
+    /// [`Error::Setting`] unless the method is the summed-area table; [`Error::Inexact`] also where [`Settings::exactness`] waives it; [`Error::QueryRunning`]
+    /// while a query of the host counts samples.
     pub fn certify(&mut self, density: &DensityMap) -> Result<Certificate> {
         let plan = self.prepare_certificate(density)?;
         let _state = StateGuard::new(&self.gl);

@@ -44,7 +44,7 @@ impl PositionMaker {
         Ok(Self {
             gl: gl.clone(),
             program: Program::new(gl, &Self::shader_source())?,
-            target: Target::single(gl, texture)?,
+            target: Target::single(gl, texture)?.labelled(&["positions"]),
         })
     }
 

@@ -43,9 +43,9 @@ impl ShadeStage {
         Ok(Self {
             gl: gl.clone(),
             program: Program::new(gl, &source())?,
-            direct: plane()?,
-            seen_through: plane()?,
-            target: Target::new(gl, vec![plane()?, plane()?])?,
+            direct: plane()?.labelled("direct light"),
+            seen_through: plane()?.labelled("light seen through glass"),
+            target: Target::new(gl, vec![plane()?, plane()?])?.labelled(&["picture", "indirect light"]),
         })
     }
 

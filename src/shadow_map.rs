@@ -48,7 +48,8 @@ impl ShadowMaps {
         let cube = CubeMap::new(gl, scene, SIDE, BORDER)?;
         let _state = StateGuard::new(gl);
         let texels = primitives(scene);
-        let primitives = Texture::new(gl, TextureFormat::Rgba32Float, texels.size(), 1)?;
+        let primitives =
+            Texture::new(gl, TextureFormat::Rgba32Float, texels.size(), 1)?.labelled("primitives");
         primitives.upload(&texels);
         let irradiance = Texture::new(gl, TextureFormat::Rgba32Float, size, 1)?;
         let (min, max) = scene.bounds();
@@ -58,7 +59,7 @@ impl ShadowMaps {
             cube,
             primitives,
             margin: MARGIN * (max - min).length(),
-            irradiance: Target::single(gl, irradiance)?,
+            irradiance: Target::single(gl, irradiance)?.labelled(&["direct irradiance"]),
         })
     }
 

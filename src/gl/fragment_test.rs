@@ -44,9 +44,12 @@ pub(crate) fn fill_where(
     target: &mut Target,
 ) -> Result<()> {
     let _state = StateGuard::new(gl);
-    let _tests = Tests::save(gl);
     target.clear(&[0]);
     attach(gl, target, texture, test)?;
+    let tests = match test {
+        FragmentTest::Stencil { .. } => StateGuard::of_stencil_tests(gl),
+        FragmentTest::Depth { .. } => StateGuard::of_depth_tests(gl),
+    };
     // SAFETY: the context is current while the handle lives.
     unsafe {
         let glow = gl.glow();
@@ -69,6 +72,7 @@ pub(crate) fn fill_where(
         }
     }
     let drawn = pass.fill(target);
+    drop(tests);
     // SAFETY: the framebuffer is bound by the pass, or by `attach`.
     unsafe { detach(gl, test) };
     drawn
@@ -121,82 +125,6 @@ unsafe fn detach(gl: &Gl, test: FragmentTest) {
         // SAFETY: the caller has bound our framebuffer.
         unsafe {
             gl.glow().framebuffer_texture_2d(glow::DRAW_FRAMEBUFFER, attachment, glow::TEXTURE_2D, None, 0);
-        }
-    }
-}
-
-/// The host's depth and stencil tests, put back when dropped.
-struct Tests {
-    gl: Gl,
-    enabled: [bool; 2],
-    /// Function, reference and bits; failing, passing without and with depth: of front and back.
-    stencil: [[i32; 6]; 2],
-    depth_function: i32,
-    depth_mask: bool,
-    depth_range: [f32; 2],
-}
-
-const CAPABILITIES: [u32; 2] = [glow::STENCIL_TEST, glow::DEPTH_TEST];
-const FACES: [u32; 2] = [glow::FRONT, glow::BACK];
-
-impl Tests {
-    fn save(gl: &Gl) -> Self {
-        let glow = gl.glow();
-        // SAFETY: the context is current while the handle lives; these states have one value, the range two.
-        unsafe {
-            let front = [
-                glow::STENCIL_FUNC,
-                glow::STENCIL_REF,
-                glow::STENCIL_VALUE_MASK,
-                glow::STENCIL_FAIL,
-                glow::STENCIL_PASS_DEPTH_FAIL,
-                glow::STENCIL_PASS_DEPTH_PASS,
-            ];
-            let back = [
-                glow::STENCIL_BACK_FUNC,
-                glow::STENCIL_BACK_REF,
-                glow::STENCIL_BACK_VALUE_MASK,
-                glow::STENCIL_BACK_FAIL,
-                glow::STENCIL_BACK_PASS_DEPTH_FAIL,
-                glow::STENCIL_BACK_PASS_DEPTH_PASS,
-            ];
-            let mut depth_range = [0.0; 2];
-            glow.get_parameter_f32_slice(glow::DEPTH_RANGE, &mut depth_range);
-            Self {
-                gl: gl.clone(),
-                enabled: CAPABILITIES.map(|capability| glow.is_enabled(capability)),
-                stencil: [front, back].map(|face| face.map(|state| glow.get_parameter_i32(state))),
-                depth_function: glow.get_parameter_i32(glow::DEPTH_FUNC),
-                depth_mask: glow.get_parameter_bool(glow::DEPTH_WRITEMASK),
-                depth_range,
-            }
-        }
-    }
-}
-
-impl Drop for Tests {
-    fn drop(&mut self) {
-        let glow = self.gl.glow();
-        // SAFETY: the context is current while the handle lives; every value was read from it.
-        unsafe {
-            for (capability, enabled) in CAPABILITIES.into_iter().zip(self.enabled) {
-                if enabled {
-                    glow.enable(capability);
-                } else {
-                    glow.disable(capability);
-                }
-            }
-            for (face, [function, reference, bits, fail, depth_fail, pass]) in
-                FACES.into_iter().zip(self.stencil)
-            {
-                glow.stencil_func_separate(face, function.cast_unsigned(), reference, bits.cast_unsigned());
-                let [fail, depth_fail, pass] = [fail, depth_fail, pass].map(i32::cast_unsigned);
-                glow.stencil_op_separate(face, fail, depth_fail, pass);
-            }
-            glow.depth_func(self.depth_function.cast_unsigned());
-            glow.depth_mask(self.depth_mask);
-            let [near, far] = self.depth_range;
-            glow.depth_range_f32(near, far);
         }
     }
 }

@@ -128,6 +128,17 @@ impl Vertices {
         Ok(())
     }
 
+    /// Names buffer and arrays.
+    pub(crate) fn labelled(self, label: &str) -> Self {
+        if let Buffer::Ours(buffer) = self.buffer {
+            self.gl.label(glow::BUFFER, buffer.0.get(), label);
+        }
+        for (array, of) in self.arrays.into_iter().flatten().zip(["vertices", "instances"]) {
+            self.gl.label(glow::VERTEX_ARRAY, array.0.get(), &format!("{label}, {of}"));
+        }
+        self
+    }
+
     /// How many there are.
     pub(crate) fn count(&self) -> u32 {
         self.count.cast_unsigned()

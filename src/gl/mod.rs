@@ -8,12 +8,15 @@
 mod device_info;
 mod fragment_test;
 mod geometry;
+mod label;
 mod pass;
 mod program;
 mod query;
 mod readback;
 mod source;
 mod state;
+#[doc = include_str!("state_contract.md")]
+pub mod state_contract {}
 mod texture;
 mod timer;
 
@@ -27,6 +30,7 @@ pub(crate) use readback::Readback;
 pub use source::ShaderSource;
 pub(crate) use source::glsl;
 pub(crate) use state::StateGuard;
+pub use state::StatePolicy;
 pub(crate) use texture::Texture;
 pub use texture::TextureFormat;
 pub use timer::{Sample, Timer, time};
@@ -46,18 +50,22 @@ use crate::error::{Error, Result};
 #[derive(Clone)]
 pub struct Gl {
     inner: Rc<Inner>,
+    state_policy: StatePolicy,
 }
 
 struct Inner {
     glow: Arc<glow::Context>,
     get_booleani_v: Option<GetBooleaniV>,
     info: DeviceInfo,
-    debug_groups: bool,
+    /// Whether passes and objects can be named: KHR_debug.
+    names_things: bool,
     vertex_array: glow::VertexArray,
     nearest: glow::Sampler,
     nearest_mipmap: glow::Sampler,
     /// What all textures of ours hold together.
     texture_bytes: Cell<u64>,
+    /// Calls of ours that are under way, one inside of the other.
+    state_guards: Cell<u32>,
     /// The context itself, when the library opened it. Last, so that it is dropped last.
     _context: Option<Box<dyn Any>>,
 }
@@ -67,7 +75,7 @@ type GetBooleaniV = unsafe extern "system" fn(target: u32, index: u32, data: *mu
 impl Gl {
     /// Loads the commands of the current context through `loader`.
     ///
-    /// No extension is needed. KHR_debug is used for pass labels when it is there.
+    /// No extension is needed. KHR_debug is used to name passes and objects when it is there.
     ///
     /// # Errors
     /// [`Error::NoContext`] when no context is current, [`Error::Version`] when it is older than 3.3.
@@ -86,7 +94,9 @@ impl Gl {
         context: Option<Box<dyn Any>>,
     ) -> Result<Self> {
         check_current(&mut loader)?;
-        let has_debug_groups = !loader(c"glPushDebugGroup").is_null();
+        let names_things = [c"glPushDebugGroup", c"glPopDebugGroup", c"glObjectLabel"]
+            .iter()
+            .all(|command| !loader(command).is_null());
         let get_booleani_v = loader(c"glGetBooleani_v");
         // SAFETY: the caller vouches for the loader; a current context was just seen.
         let glow = unsafe { glow::Context::from_loader_function_cstr(loader) };
@@ -95,7 +105,7 @@ impl Gl {
             unsafe { std::mem::transmute::<*const c_void, GetBooleaniV>(get_booleani_v) }
         });
         // SAFETY: as the caller vouches.
-        unsafe { Self::new(Arc::new(glow), get_booleani_v, has_debug_groups, context) }
+        unsafe { Self::new(Arc::new(glow), get_booleani_v, names_things, context) }
     }
 
     /// Uses a context that the host has already wrapped in glow 0.17.
@@ -130,7 +140,7 @@ impl Gl {
     unsafe fn new(
         glow: Arc<glow::Context>,
         get_booleani_v: Option<GetBooleaniV>,
-        has_debug_groups: bool,
+        names_things: bool,
         context: Option<Box<dyn Any>>,
     ) -> Result<Self> {
         let info = DeviceInfo::of(&glow);
@@ -138,7 +148,7 @@ impl Gl {
         if version.is_embedded || (version.major, version.minor) < (3, 3) {
             return Err(Error::Version { version: info.version, renderer: info.renderer });
         }
-        let debug_groups = has_debug_groups && glow.supports_debug();
+        let names_things = names_things && glow.supports_debug();
         // SAFETY: the context is current, as the caller vouches; creating objects changes no binding.
         let (vertex_array, nearest, nearest_mipmap) = unsafe {
             (
@@ -152,14 +162,30 @@ impl Gl {
             glow,
             get_booleani_v,
             info,
-            debug_groups,
+            names_things,
             vertex_array,
             nearest,
             nearest_mipmap,
             texture_bytes: Cell::new(0),
+            state_guards: Cell::new(0),
             _context: context,
         };
-        Ok(Self { inner: Rc::new(inner) })
+        let gl = Self { inner: Rc::new(inner), state_policy: StatePolicy::Restore };
+        gl.label_own_objects();
+        Ok(gl)
+    }
+
+    /// Another handle to the same context, whose calls, and those of all that is made from it, treat the host's state
+    /// by `policy`. A host may use both side by side.
+    #[must_use]
+    pub fn with_state_policy(&self, policy: StatePolicy) -> Self {
+        Self { state_policy: policy, ..self.clone() }
+    }
+
+    /// How this handle treats the host's state; [`StatePolicy::Restore`] unless it was made otherwise.
+    #[must_use]
+    pub fn state_policy(&self) -> StatePolicy {
+        self.state_policy
     }
 
     /// What the context says of itself.
@@ -245,19 +271,6 @@ impl Gl {
                 code => tracing::warn!(code = error_name(code), "an OpenGL error was already pending"),
             }
         }
-    }
-
-    /// Runs `work` inside a debug group that RenderDoc and apitrace show as `label`.
-    fn labelled<T>(&self, label: &str, work: impl FnOnce() -> T) -> T {
-        if !self.inner.debug_groups {
-            return work();
-        }
-        // SAFETY: the context is current and has KHR_debug.
-        unsafe { self.glow().push_debug_group(glow::DEBUG_SOURCE_APPLICATION, 0, label) };
-        let result = work();
-        // SAFETY: as above; the group was pushed a line ago.
-        unsafe { self.glow().pop_debug_group() };
-        result
     }
 }
 

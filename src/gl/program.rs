@@ -105,6 +105,7 @@ impl Program {
             if !glow.get_program_link_status(name) {
                 return Err(failure(glow.get_program_info_log(name)));
             }
+            gl.label(glow::PROGRAM, name.0.get(), source.label());
             for index in 0..glow.get_active_uniforms(name) {
                 let Some(uniform) = glow.get_active_uniform(name, index) else { continue };
                 let Some(location) = glow.get_uniform_location(name, &uniform.name) else { continue };

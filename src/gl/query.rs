@@ -2,12 +2,12 @@
 
 use glow::HasContext as _;
 
-use super::{Gl, gl_error};
-use crate::error::Result;
+use super::{Gl, error_name, gl_error};
+use crate::error::{Error, Result};
 
 /// A query of one kind, to be used again and again.
 ///
-/// No other query of that kind may be running, a host's for instance: nested ones are an error in OpenGL.
+/// While another query of that kind is running, a host's for instance, it cannot begin.
 #[derive(Debug)]
 pub(crate) struct Query {
     gl: Gl,
@@ -19,7 +19,7 @@ impl Query {
     /// Fragments that are drawn: those of GL_SAMPLES_PASSED, in framebuffers of one sample a pixel.
     ///
     /// # Errors
-    /// [`Error::Gl`](crate::Error::Gl) when memory runs out.
+    /// [`Error::Gl`] when memory runs out.
     pub(crate) fn of_fragments(gl: &Gl) -> Result<Self> {
         Self::new(gl, glow::SAMPLES_PASSED)
     }
@@ -27,7 +27,7 @@ impl Query {
     /// Nanoseconds: those of GL_TIME_ELAPSED.
     ///
     /// # Errors
-    /// [`Error::Gl`](crate::Error::Gl) when memory runs out.
+    /// [`Error::Gl`] when memory runs out.
     pub(super) fn of_time(gl: &Gl) -> Result<Self> {
         Self::new(gl, glow::TIME_ELAPSED)
     }
@@ -41,7 +41,7 @@ impl Query {
     /// Counts what `work` draws; waits for the GPU.
     ///
     /// # Errors
-    /// Those of `work`, and [`Error::Gl`](crate::Error::Gl) if the query fails.
+    /// Those of `work`, [`Error::QueryRunning`], and [`Error::Gl`] if the query fails.
     pub(crate) fn count(&self, work: impl FnOnce() -> Result<()>) -> Result<u64> {
         self.begin()?;
         let result = work();
@@ -53,11 +53,27 @@ impl Query {
     }
 
     /// # Errors
-    /// [`Error::Gl`](crate::Error::Gl) if another query of the kind is running.
+    /// [`Error::QueryRunning`] while another query of the kind is running, which goes on; [`Error::Gl`].
     pub(super) fn begin(&self) -> Result<()> {
+        self.gl.check("what comes before a query")?;
         // SAFETY: the context is current while the handle lives.
-        unsafe { self.gl.glow().begin_query(self.target, self.name) };
-        self.gl.check("beginning a query; one of the host's may be running")
+        let code = unsafe {
+            self.gl.glow().begin_query(self.target, self.name);
+            self.gl.glow().get_error()
+        };
+        match code {
+            glow::NO_ERROR => Ok(()),
+            // The name is of this kind and not running, so that only another one can be in the way.
+            glow::INVALID_OPERATION => Err(Error::QueryRunning { kind: self.kind() }),
+            _ => {
+                Err(Error::Gl { code: error_name(code), what: format!("beginning a {} query", self.kind()) })
+            }
+        }
+    }
+
+    /// The name of the GL enum.
+    fn kind(&self) -> &'static str {
+        if self.target == glow::TIME_ELAPSED { "GL_TIME_ELAPSED" } else { "GL_SAMPLES_PASSED" }
     }
 
     /// Ends what [`begin`](Self::begin) began.

@@ -16,13 +16,20 @@ pub(crate) struct Readback {
 }
 
 impl Readback {
-    /// Makes the buffer, still without memory.
+    /// Makes the buffer, named `label` and still without memory.
     ///
     /// # Errors
     /// [`Error::Gl`](crate::Error::Gl) when names run out.
-    pub(crate) fn new(gl: &Gl) -> Result<Self> {
-        // SAFETY: the context is current while the handle lives.
-        let buffer = unsafe { gl.glow().create_buffer() }.map_err(|what| gl_error(gl.glow(), &what))?;
+    pub(crate) fn new(gl: &Gl, label: &str) -> Result<Self> {
+        let glow = gl.glow();
+        // SAFETY: the context is current while the handle lives. A name is a buffer, and can be labelled, once bound.
+        let buffer = unsafe {
+            let buffer = glow.create_buffer().map_err(|what| gl_error(glow, &what))?;
+            glow.bind_buffer(glow::PIXEL_PACK_BUFFER, Some(buffer));
+            glow.bind_buffer(glow::PIXEL_PACK_BUFFER, None);
+            buffer
+        };
+        gl.label(glow::BUFFER, buffer.0.get(), label);
         Ok(Self { gl: gl.clone(), buffer, pending: None })
     }
 

@@ -499,6 +499,11 @@ impl Texture {
     pub(crate) fn gl(&self) -> &Gl {
         &self.gl
     }
+
+    /// Whether the library made it.
+    pub(super) fn is_ours(&self) -> bool {
+        self.ours
+    }
 }
 
 impl Drop for Texture {

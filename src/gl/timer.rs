@@ -42,7 +42,8 @@ impl Sample {
 
 /// A query that can be used again and again; timing allocates nothing.
 ///
-/// No other GL_TIME_ELAPSED query may be running while it times: nested ones are an error in OpenGL.
+/// No other GL_TIME_ELAPSED query may be running while it times: nested ones are an error in OpenGL. What is timed runs
+/// under the host's own state.
 #[derive(Debug)]
 pub struct Timer {
     gl: Gl,
@@ -61,7 +62,8 @@ impl Timer {
     pub fn new(gl: &Gl) -> Result<Self> {
         let _state = StateGuard::new(gl);
         let llvmpipe_frame = if gl.info().is_llvmpipe() {
-            Some(Target::single(gl, Texture::new(gl, TextureFormat::R32Uint, UVec2::ONE, 1)?)?)
+            let pixel = Texture::new(gl, TextureFormat::R32Uint, UVec2::ONE, 1)?;
+            Some(Target::single(gl, pixel)?.labelled(&["frame before a timed one"]))
         } else {
             None
         };
@@ -71,8 +73,24 @@ impl Timer {
     /// Runs `work`, waits for it, and says how long it took on the GPU and by the clock.
     ///
     /// # Errors
-    /// Those of `work`, and [`Error::Gl`](crate::Error::Gl) if the query fails.
+    /// Those of `work`; [`Error::QueryRunning`](crate::Error::QueryRunning) while a query of the host times, without
+    /// running `work`; [`Error::Gl`](crate::Error::Gl) if the query fails.
     pub fn time<T>(&mut self, work: impl FnOnce() -> Result<T>) -> Result<(T, Sample)> {
+        self.begin()?;
+        let start = Instant::now();
+        let result = work();
+        self.query.end();
+        // SAFETY: the context is current while the handle lives.
+        unsafe { self.gl.glow().finish() };
+        let wall = start.elapsed();
+        let nanoseconds = self.query.result();
+        let result = result?;
+        self.gl.check("timing")?;
+        Ok((result, Sample { query: Duration::from_nanos(nanoseconds), wall }))
+    }
+
+    /// Begins the query, with nothing before it left to do.
+    fn begin(&mut self) -> Result<()> {
         let glow = self.gl.glow();
         let _state = StateGuard::new(&self.gl);
         if let Some(frame) = &mut self.llvmpipe_frame {
@@ -87,16 +105,7 @@ impl Timer {
             // SAFETY: as above.
             unsafe { glow.finish() };
         }
-        let start = Instant::now();
-        let result = work();
-        self.query.end();
-        // SAFETY: as above.
-        unsafe { glow.finish() };
-        let wall = start.elapsed();
-        let nanoseconds = self.query.result();
-        let result = result?;
-        self.gl.check("timing")?;
-        Ok((result, Sample { query: Duration::from_nanos(nanoseconds), wall }))
+        Ok(())
     }
 }
 

@@ -17,7 +17,8 @@ pub struct IrradianceMap {
 impl IrradianceMap {
     /// An empty map.
     pub(crate) fn new(gl: &Gl, size: UVec2) -> Result<Self> {
-        Ok(Self { target: Target::single(gl, Texture::new(gl, TextureFormat::Rgba32Float, size, 1)?)? })
+        let texture = Texture::new(gl, TextureFormat::Rgba32Float, size, 1)?;
+        Ok(Self { target: Target::single(gl, texture)?.labelled(&["irradiance"]) })
     }
 
     /// Columns and rows.

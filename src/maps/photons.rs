@@ -49,7 +49,8 @@ impl PhotonPoints {
         for chunk in photons.chunks(CHUNK as usize) {
             let vertices = match self.spare.pop() {
                 Some(mut vertices) => vertices.replace(chunk).map(|()| vertices),
-                None => Vertices::upload(&self.gl, chunk, &PhotonPoint::ATTRIBUTES),
+                None => Vertices::upload(&self.gl, chunk, &PhotonPoint::ATTRIBUTES)
+                    .map(|vertices| vertices.labelled("photons")),
             };
             self.chunks.push(vertices?);
         }

@@ -37,7 +37,11 @@ impl SurfaceMaps {
     #[cfg(feature = "render")]
     pub(crate) fn new(gl: &Gl, view: View) -> Result<Self> {
         let plane = || Texture::new(gl, TextureFormat::Rgba32Float, view.size(), 1);
-        let target = Target::with_depth(gl, vec![plane()?, plane()?, plane()?])?;
+        let target = Target::with_depth(gl, vec![plane()?, plane()?, plane()?])?.labelled(&[
+            "positions",
+            "normals",
+            "albedo",
+        ]);
         let [position, normal, albedo] = [0, 1, 2].map(|plane: usize| target.textures()[plane].alias());
         Ok(Self { position, normal, albedo: Some(albedo), target: Some(target), view })
     }

@@ -28,7 +28,8 @@ impl PointPass {
     pub fn new(gl: &Gl, view: &View) -> Result<Self> {
         let _state = StateGuard::new(gl);
         let program = Program::new(gl, &Self::source())?;
-        let target = Target::single(gl, Texture::new(gl, TextureFormat::R32Float, view.size(), 1)?)?;
+        let target = Target::single(gl, Texture::new(gl, TextureFormat::R32Float, view.size(), 1)?)?
+            .labelled(&["points"]);
         Ok(Self { gl: gl.clone(), view: *view, program, target })
     }
 

@@ -75,7 +75,8 @@ impl UnitPass {
     pub fn new(gl: &Gl, unit: Unit, size: UVec2) -> Result<Self> {
         let _state = StateGuard::new(gl);
         let program = Program::new(gl, &unit.source())?;
-        let target = Target::single(gl, Texture::new(gl, TextureFormat::R32Uint, size, 1)?)?;
+        let target =
+            Target::single(gl, Texture::new(gl, TextureFormat::R32Uint, size, 1)?)?.labelled(&["unit pass"]);
         Ok(Self { gl: gl.clone(), unit, program, target })
     }
 

@@ -118,13 +118,15 @@ impl Bracketed {
         };
         let blocks = BLOCK_SIDES.map(|(wider_side, side)| {
             Ok(Blocks {
-                target: Target::single(gl, texture(TextureFormat::R32Uint, side)?)?,
+                target: Target::single(gl, texture(TextureFormat::R32Uint, side)?)?
+                    .labelled(&["brackets of blocks"]),
                 programs: programs(block_sources(density, settings, wider_side, side))?,
             })
         });
-        let tiles = || {
+        let tiles = || -> Result<Target> {
             let (brackets, classes) = (TextureFormat::R32Uint, TextureFormat::R8Uint);
-            Target::new(gl, vec![texture(brackets, TILE_SIDE)?, texture(classes, TILE_SIDE)?])
+            let target = Target::new(gl, vec![texture(brackets, TILE_SIDE)?, texture(classes, TILE_SIDE)?])?;
+            Ok(target.labelled(&["brackets of tiles", "classes of tiles"]))
         };
         let [nothing, changed, added] =
             Before::ALL.map(|before| Program::new(gl, &tile_source(density, settings, before)));

@@ -34,7 +34,7 @@ impl GridSearch {
         Ok(Self {
             program: Program::new(gl, &source(density, settings, step))?,
             settings: in_halves(settings),
-            radii: Target::single(gl, grid)?,
+            radii: Target::single(gl, grid)?.labelled(&["radii of a grid"]),
         })
     }
 

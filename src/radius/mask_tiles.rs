@@ -21,7 +21,10 @@ pub(super) struct MaskTiles {
 
 impl MaskTiles {
     pub(super) fn new(gl: &Gl, size: UVec2) -> Result<Self> {
-        let target = |size| Target::single(gl, Texture::new(gl, TextureFormat::R8Uint, size, 1)?);
+        let target = |size| -> Result<Target> {
+            let tiles = Texture::new(gl, TextureFormat::R8Uint, size, 1)?;
+            Ok(Target::single(gl, tiles)?.labelled(&["tiles of a mask"]))
+        };
         let blocks = (size + SIDE - 1) / SIDE;
         Ok(Self {
             program: Program::new(gl, &source())?,

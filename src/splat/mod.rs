@@ -72,8 +72,8 @@ impl SplatStage {
             spread: Program::new(gl, &spread)?,
             addition: Program::new(gl, &addition)?,
             fixed,
-            table: Target::single(gl, table)?,
-            of_chunk: Target::single(gl, of_chunk)?,
+            table: Target::single(gl, table)?.labelled(&[COVERED]),
+            of_chunk: Target::single(gl, of_chunk)?.labelled(&[SPREAD]),
             irradiance,
         })
     }

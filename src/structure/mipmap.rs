@@ -52,7 +52,8 @@ impl Mipmap {
             _ => size,
         };
         let levels = base.max_element().ilog2() + 1;
-        let chain = Target::single(gl, Texture::new(gl, super::format(settings), base, levels)?)?;
+        let chain = Texture::new(gl, super::format(settings), base, levels)?;
+        let chain = Target::single(gl, chain)?.labelled(&["mipmap of sums"]);
         // A box never holds a block larger than itself; the naive column goes up to the end.
         let top_level = match settings.method {
             Method::NaiveMipmap => levels - 1,

@@ -10,10 +10,12 @@ mod certificate;
 mod density;
 mod exactness;
 mod faults;
+mod frame_path;
 mod frames;
 mod host;
 #[cfg(feature = "render")]
 mod irradiance;
+mod labels;
 #[cfg(feature = "render")]
 mod leaks;
 #[cfg(feature = "render")]

@@ -46,7 +46,8 @@ impl Approximation {
     pub(super) fn half_density(gl: &Gl, density: &DensityMap, search: Search) -> Result<Self> {
         let _state = StateGuard::new(gl);
         let size = (density.size() + 1) / 2;
-        let half = Target::single(gl, Texture::new(gl, TextureFormat::R32Uint, size, 1)?)?;
+        let half = Target::single(gl, Texture::new(gl, TextureFormat::R32Uint, size, 1)?)?
+            .labelled(&["half the density"]);
         // Boxes there are others than those that the bounds are of; the total is the same.
         let bounds = CountBounds::total_at_most(density.bounds().total);
         let coarse = DensityMap::borrow(gl, half.texture().name(), bounds)?;
@@ -78,7 +79,8 @@ impl Approximation {
     }
 
     fn new(gl: &Gl, size: UVec2, search: Search, first: First) -> Result<Self> {
-        let radii = Target::single(gl, Texture::new(gl, TextureFormat::R32Uint, size, 1)?)?;
+        let radii = Target::single(gl, Texture::new(gl, TextureFormat::R32Uint, size, 1)?)?
+            .labelled(&["interpolated radii"]);
         let interpolation = Program::new(gl, &interpolation_source())?;
         gl.check("setting up an approximation")?;
         Ok(Self { gl: gl.clone(), first, interpolation, max_radius: search.max_radius, radii })

@@ -57,7 +57,7 @@ enum Build {
 
 impl SummedAreaTable {
     pub(super) fn new(gl: &Gl, size: UVec2, density: TextureFormat, settings: &Settings) -> Result<Self> {
-        let target = || Target::single(gl, Texture::new(gl, super::format(settings), size, 1)?);
+        let target = || table_of(gl, super::format(settings), size, "summed-area table");
         Ok(Self {
             table: target()?,
             build: match settings.sat_build {
@@ -82,8 +82,7 @@ impl SummedAreaTable {
     pub(super) fn add(&mut self, density: &DensityMap, plan: Plan) -> Result<()> {
         if self.addition.is_none() {
             let table = self.table.texture();
-            let target =
-                || Target::single(table.gl(), Texture::new(table.gl(), table.format(), table.size(), 1)?);
+            let target = || table_of(table.gl(), table.format(), table.size(), "summed-area table of a part");
             self.addition = Some(Addition {
                 program: Program::new(table.gl(), &addition_source(&self.settings))?,
                 added: target()?,
@@ -135,6 +134,11 @@ impl Build {
             Self::Scan(scan) => scan.build(density, plan, changed, table),
         }
     }
+}
+
+/// A target for sums, named `label`.
+fn table_of(gl: &Gl, format: TextureFormat, size: UVec2, label: &str) -> Result<Target> {
+    Ok(Target::single(gl, Texture::new(gl, format, size, 1)?)?.labelled(&[label]))
 }
 
 /// What the storage takes from each count: the mean of the map, as far as its total is known.

@@ -124,7 +124,10 @@ impl Stage {
             Some(layers) => Texture::layered(gl, format, size, layers)?,
             None => Texture::new(gl, format, size, 1)?,
         };
-        Ok(Self { program: Program::new(gl, source)?, target: Target::single(gl, texture)? })
+        Ok(Self {
+            program: Program::new(gl, source)?,
+            target: Target::single(gl, texture)?.labelled(&[source.label()]),
+        })
     }
 }
 

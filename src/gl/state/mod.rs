@@ -1,0 +1,154 @@
+//! A host's OpenGL state around a call: saved and put back, or default before and after.
+
+mod table;
+
+pub(super) use table::{DRAW_BUFFERS, UNITS};
+
+use table::{DEPTH_TESTS, PASSES, Row, STENCIL_TESTS, Values};
+
+use super::Gl;
+
+/// What the library does about a host's OpenGL state; a property of a [`Gl`] handle and of all that is made from it.
+///
+/// The page [`state_contract`](crate::gl::state_contract) lists every state that this is about.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum StatePolicy {
+    /// Each call asks the driver for what it touches, and puts it back: safe in any host, for about 70 questions a call.
+    #[default]
+    Restore,
+    /// The host vouches that what a call touches has OpenGL's default values when it starts, and finds the same when it
+    /// returns, failed or not. No call of a frame asks the driver for anything but errors.
+    ///
+    /// The viewport has no default that is the same everywhere: it is left as the last pass had it, and the host sets
+    /// its own before it draws. Framebuffer 0 is bound afterwards, whatever the host's window draws to.
+    Defaults,
+}
+
+/// Sets the library's own state; the host's, or the default, comes back when it is dropped.
+#[derive(Debug)]
+pub(crate) struct StateGuard {
+    gl: Gl,
+    rows: &'static [Row],
+    before: Before,
+}
+
+/// What there was before a guard.
+#[derive(Debug)]
+enum Before {
+    /// The host's state, row by row.
+    Saved(Vec<Values>),
+    /// OpenGL's defaults.
+    Defaults,
+    /// The library's own state: another call of ours is under way.
+    Ours,
+}
+
+impl StateGuard {
+    /// Saves the host's state and sets what every pass and transfer relies on.
+    pub(crate) fn new(gl: &Gl) -> Self {
+        gl.forget_errors();
+        let guards = &gl.inner.state_guards;
+        let before = if guards.get() > 0 { Before::Ours } else { Before::of(gl, PASSES) };
+        guards.set(guards.get() + 1);
+        for (row, instance) in instances(PASSES) {
+            let is_there = matches!(before, Before::Defaults) && row.default == row.relied_on;
+            if let Some(values) = row.relied_on.filter(|_| !is_there) {
+                row.write(gl, instance, values);
+            }
+        }
+        Self { gl: gl.clone(), rows: PASSES, before }
+    }
+
+    /// Saves what a test of the host's depth touches, inside of a guard of the rest.
+    pub(super) fn of_depth_tests(gl: &Gl) -> Self {
+        Self { gl: gl.clone(), rows: DEPTH_TESTS, before: Before::of(gl, DEPTH_TESTS) }
+    }
+
+    /// Saves what a test of the host's stencil touches, inside of a guard of the rest, while a framebuffer with stencil is
+    /// drawn to.
+    pub(super) fn of_stencil_tests(gl: &Gl) -> Self {
+        Self { gl: gl.clone(), rows: STENCIL_TESTS, before: Before::of(gl, STENCIL_TESTS) }
+    }
+}
+
+impl Before {
+    fn of(gl: &Gl, rows: &'static [Row]) -> Self {
+        match gl.state_policy() {
+            StatePolicy::Restore => {
+                Self::Saved(instances(rows).map(|(row, instance)| row.read(gl, instance)).collect())
+            }
+            StatePolicy::Defaults => Self::Defaults,
+        }
+    }
+}
+
+impl Drop for StateGuard {
+    fn drop(&mut self) {
+        match &self.before {
+            Before::Saved(values) => {
+                for ((row, instance), &values) in instances(self.rows).rev().zip(values.iter().rev()) {
+                    row.write(&self.gl, instance, values);
+                }
+            }
+            Before::Defaults => {
+                for (row, instance) in instances(self.rows).rev() {
+                    if let Some(values) = row.default {
+                        row.write(&self.gl, instance, values);
+                    }
+                }
+            }
+            Before::Ours => {
+                for (row, instance) in instances(self.rows) {
+                    if let Some(values) = row.relied_on {
+                        row.write(&self.gl, instance, values);
+                    }
+                }
+            }
+        }
+        if std::ptr::eq(self.rows, PASSES) {
+            let guards = &self.gl.inner.state_guards;
+            guards.set(guards.get() - 1);
+        }
+    }
+}
+
+/// Each row with each of its instances.
+fn instances(rows: &'static [Row]) -> impl DoubleEndedIterator<Item = (&'static Row, u32)> {
+    rows.iter().flat_map(|row| (0..row.instances).map(move |instance| (row, instance)))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+
+    fn all() -> impl Iterator<Item = &'static Row> {
+        PASSES.iter().chain(DEPTH_TESTS).chain(STENCIL_TESTS)
+    }
+
+    /// The names in backticks that start with GL_, of the section "What is touched".
+    fn named(page: &str) -> BTreeSet<&str> {
+        let section = page.split("\n# What is touched").nth(1).expect("the section is there");
+        let section = section.split("\n# ").next().expect("text");
+        section.split('`').filter(|word| word.starts_with("GL_")).collect()
+    }
+
+    #[test]
+    fn the_page_names_what_the_table_holds_and_nothing_else() {
+        let page = include_str!("../state_contract.md");
+        let table: BTreeSet<_> = all().flat_map(|row| row.names).copied().collect();
+        assert_eq!(named(page), table);
+        let without = page.replace("`GL_CULL_FACE`", "faces");
+        assert_ne!(named(&without), table, "a name that is left out is seen");
+    }
+
+    #[test]
+    fn only_the_viewport_has_no_default_and_only_alignments_differ_from_it() {
+        let without: Vec<_> = all().filter(|row| row.default.is_none()).flat_map(|row| row.names).collect();
+        assert_eq!(without, [&"GL_VIEWPORT"]);
+        let differ = all().filter(|row| row.relied_on.is_some() && row.relied_on != row.default);
+        let differ: Vec<_> = differ.flat_map(|row| row.names).collect();
+        assert_eq!(differ, [&"GL_PACK_ALIGNMENT", &"GL_UNPACK_ALIGNMENT"]);
+    }
+}

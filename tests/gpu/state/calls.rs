@@ -1,0 +1,214 @@
+//! Every public call around radius maps, those that fail included.
+
+use glam::UVec2;
+use varikernel::gl::TextureFormat;
+use varikernel::reference::{self, Radii};
+use varikernel::settings::{Edges, Exactness, Method, Order, Search, Settings};
+use varikernel::{
+    AdaptivePipeline, Changed, CountBounds, DensityMap, Error, Frame, Image, Mask, MaskMaker, RadiusMap,
+    RadiusPipeline,
+};
+
+use super::host::fail_at_each;
+use super::{SIZE, Watch};
+use crate::support::{random_map, search};
+
+fn question() -> Search {
+    search(25, 8, Edges::Scale)
+}
+
+fn bracketed() -> Settings {
+    Settings { search: Search { order: Order::Bracketed, ..question() }, ..Settings::default() }
+}
+
+fn density() -> Image<u32> {
+    random_map(SIZE.x, SIZE.y, 4)
+}
+
+pub(super) fn expected() -> Radii {
+    reference::radius(&density(), question())
+}
+
+pub(super) fn map(watch: &Watch<'_>) -> DensityMap {
+    let bounds = CountBounds::of(&density(), question());
+    DensityMap::borrow(&watch.gl, watch.textures[0], bounds).unwrap()
+}
+
+pub(super) fn pipeline(watch: &Watch<'_>) -> RadiusPipeline {
+    RadiusPipeline::new(&watch.gl, SIZE, TextureFormat::R32Uint, bracketed()).unwrap()
+}
+
+pub(super) fn all(watch: &Watch<'_>) {
+    maps(watch);
+    methods(watch);
+    frames(watch);
+    masks(watch);
+    failing(watch);
+    failing_half_way(watch);
+}
+
+fn maps(watch: &Watch<'_>) {
+    let mut map = DensityMap::upload(&watch.gl, &density(), CountBounds::UNKNOWN).unwrap();
+    watch.unchanged("DensityMap::upload");
+    map.replace(&density(), CountBounds::UNKNOWN).unwrap();
+    watch.unchanged("DensityMap::replace");
+    DensityMap::borrow(&watch.gl, watch.textures[0], CountBounds::UNKNOWN).unwrap();
+    watch.unchanged("DensityMap::borrow");
+    Mask::upload(&watch.gl, &Image::filled(SIZE, 1)).unwrap();
+    watch.unchanged("Mask::upload");
+    Mask::borrow(&watch.gl, watch.textures[0]).unwrap();
+    watch.unchanged("Mask::borrow");
+    varikernel::gl::time(&watch.gl, || Ok(())).unwrap();
+    watch.unchanged("time");
+}
+
+fn methods(watch: &Watch<'_>) {
+    let (map, expected) = (map(watch), expected());
+    for method in Method::ALL {
+        let settings = Settings { search: question(), method, limited_mask: true, ..Settings::default() };
+        let mut pipeline = RadiusPipeline::new(&watch.gl, SIZE, map.format(), settings).unwrap();
+        watch.unchanged("RadiusPipeline::new");
+        let radii = pipeline.render(&map).unwrap();
+        watch.unchanged("RadiusPipeline::render");
+        let radius = radii.read().unwrap();
+        watch.unchanged("RadiusMap::read");
+        let limited = radii.read_limited().unwrap().unwrap();
+        watch.unchanged("RadiusMap::read_limited");
+        if method.is_exact() {
+            assert_eq!(radius, expected.radius, "{method:?} under the host's state");
+            assert_eq!(limited, expected.limited, "{method:?} under the host's state");
+        }
+        let textures = (radii.texture(), radii.limited_texture());
+        let is_table = method == Method::SummedAreaTable;
+        for _ in 0..2 {
+            let certificate = pipeline.certify(&map);
+            watch.unchanged("RadiusPipeline::certify");
+            assert_eq!(certificate.is_ok_and(varikernel::Certificate::is_proved), is_table, "{method:?}");
+        }
+        let borrowed = RadiusMap::borrow(&watch.gl, textures.0, textures.1).unwrap();
+        watch.unchanged("RadiusMap::borrow");
+        assert_eq!(pipeline.certify_radii(&map, &borrowed).is_ok(), is_table);
+        watch.unchanged("RadiusPipeline::certify_radii");
+        pipeline.build(&map).unwrap();
+        watch.unchanged("RadiusPipeline::build");
+        pipeline.search(&map).unwrap();
+        watch.unchanged("RadiusPipeline::search");
+    }
+    watch.unchanged("dropping pipelines");
+}
+
+/// The calls of a host that tells what changed.
+fn frames(watch: &Watch<'_>) {
+    let (map, expected) = (map(watch), expected());
+    let mask = Mask::upload(&watch.gl, &Image::filled(SIZE, 1)).unwrap();
+    let settings = Settings { masked: true, ..bracketed() };
+    let mut masked = RadiusPipeline::new(&watch.gl, SIZE, map.format(), settings).unwrap();
+    let rectangle = Changed::Rectangle { first: UVec2::new(3, 4), size: UVec2::new(5, 6) };
+    for changed in [Changed::Everything, rectangle, Changed::Nothing] {
+        let radii = masked.update(&Frame { density: &map, mask: Some(&mask), changed }).unwrap();
+        watch.unchanged("RadiusPipeline::update");
+        assert_eq!(radii.read().unwrap(), expected.radius, "{changed:?} under the host's state");
+    }
+    masked.update(&Frame { density: &map, mask: Some(&mask), changed: Changed::Added }).unwrap();
+    watch.unchanged("RadiusPipeline::update with added photons");
+    masked.set_order(Order::Forward).unwrap();
+    watch.unchanged("RadiusPipeline::set_order");
+
+    let mut adaptive = AdaptivePipeline::new(&watch.gl, SIZE, map.format(), bracketed()).unwrap();
+    watch.unchanged("AdaptivePipeline::new");
+    for _ in 0..3 {
+        let radii = adaptive.update(&Frame::new(&map)).unwrap();
+        watch.unchanged("AdaptivePipeline::update");
+        assert_eq!(radii.read().unwrap(), expected.radius, "adaptive under the host's state");
+    }
+}
+
+fn masks(watch: &Watch<'_>) {
+    let depth = watch.textures[1];
+    let mut maker = MaskMaker::new(&watch.gl, SIZE).unwrap();
+    watch.unchanged("MaskMaker::new");
+    maker.from_depth(depth, false).unwrap();
+    watch.unchanged("MaskMaker::from_depth");
+    maker.from_stencil(depth, 5, 0xFF).unwrap();
+    watch.unchanged("MaskMaker::from_stencil");
+    assert!(maker.from_depth(watch.textures[0], false).is_err());
+    watch.unchanged("MaskMaker::from_depth that fails");
+    assert!(maker.from_stencil(watch.textures[0], 0, 1).is_err());
+    watch.unchanged("MaskMaker::from_stencil that fails");
+}
+
+/// Calls that are asked for what does not fit.
+fn failing(watch: &Watch<'_>) {
+    let gl = &watch.gl;
+    let mut map = map(watch);
+    let too_large = UVec2::splat(gl.info().max_texture_size + 1);
+    assert!(RadiusPipeline::new(gl, too_large, map.format(), Settings::default()).is_err());
+    assert!(AdaptivePipeline::new(gl, too_large, map.format(), Settings::default()).is_err());
+    assert!(MaskMaker::new(gl, too_large).is_err());
+    watch.unchanged("making what is too large");
+    let mut other = RadiusPipeline::new(gl, UVec2::ONE, map.format(), Settings::default()).unwrap();
+    assert!(other.render(&map).is_err());
+    watch.unchanged("RadiusPipeline::render of another size");
+    assert!(other.certify(&map).is_err());
+    watch.unchanged("RadiusPipeline::certify of another size");
+    assert!(map.replace(&Image::filled(UVec2::ONE, 1), CountBounds::UNKNOWN).is_err());
+    watch.unchanged("DensityMap::replace that fails");
+
+    let mut pipeline = pipeline(watch);
+    assert!(matches!(pipeline.search(&map), Err(Error::Mismatch { .. })), "nothing was built");
+    let mask = Mask::upload(gl, &Image::filled(SIZE, 1)).unwrap();
+    assert!(pipeline.update(&Frame { mask: Some(&mask), ..Frame::new(&map) }).is_err());
+    watch.unchanged("RadiusPipeline::update with a mask that is not expected");
+    let settings = Settings {
+        exactness: Exactness::Required,
+        storage: varikernel::settings::Storage::F16,
+        ..bracketed()
+    };
+    let mut rounding = RadiusPipeline::new(gl, SIZE, map.format(), settings).unwrap();
+    let unknown = DensityMap::borrow(gl, watch.textures[0], CountBounds::UNKNOWN).unwrap();
+    assert!(matches!(rounding.render(&unknown), Err(Error::Inexact { .. })));
+    watch.unchanged("RadiusPipeline::render that could round");
+
+    let depth = watch.textures[1];
+    assert!(DensityMap::borrow(gl, depth, CountBounds::UNKNOWN).is_err());
+    watch.unchanged("DensityMap::borrow of depth");
+    assert!(Mask::borrow(gl, depth).is_err());
+    assert!(RadiusMap::borrow(gl, depth, None).is_err());
+    assert!(RadiusMap::borrow(gl, watch.textures[0], Some(watch.textures[0])).is_err());
+    watch.unchanged("borrowing that fails");
+    let failed = varikernel::gl::time(gl, || -> varikernel::Result<()> {
+        Err(Error::NoContext("work that fails".to_owned()))
+    });
+    assert!(failed.is_err());
+    watch.unchanged("timing work that fails");
+}
+
+/// Calls whose shaders or framebuffers the driver refuses, each in turn.
+fn failing_half_way(watch: &Watch<'_>) {
+    let (gl, format) = (&watch.gl, TextureFormat::R32Uint);
+    let after =
+        |call: &'static str| move |failure: u32| watch.unchanged(&format!("{call}, failure {failure}"));
+    let settings = Settings { limited_mask: true, ..bracketed() };
+    let failures = [
+        fail_at_each(|| RadiusPipeline::new(gl, SIZE, format, settings), after("RadiusPipeline::new")),
+        fail_at_each(|| AdaptivePipeline::new(gl, SIZE, format, settings), after("AdaptivePipeline::new")),
+        fail_at_each(|| MaskMaker::new(gl, SIZE), after("MaskMaker::new")),
+        fail_at_each(|| RadiusMap::borrow(gl, watch.textures[0], None), after("RadiusMap::borrow")),
+    ];
+    assert!(failures[0] > 10 && failures[1] > failures[0] && failures[2..] == [3, 1], "{failures:?}");
+    // A proof compiles its shaders when it is first asked for.
+    let map = map(watch);
+    let failures = fail_at_each(
+        || {
+            let mut pipeline = pipeline(watch);
+            pipeline.render(&map)?;
+            pipeline.certify(&map)
+        },
+        after("RadiusPipeline::certify"),
+    );
+    assert!(failures > 10, "{failures}");
+    let mut pipeline = pipeline(watch);
+    pipeline.render(&map).unwrap();
+    let failures = fail_at_each(|| pipeline.set_order(Order::Forward), after("RadiusPipeline::set_order"));
+    assert_eq!(failures, 4, "a program of two shaders, another for pixels without photons, a map");
+}

@@ -1,0 +1,91 @@
+//! Every public call around pictures.
+
+use glam::UVec2;
+use varikernel::measure::PictureError;
+use varikernel::photon::{Emission, TraceSettings};
+use varikernel::render::{Renderer, first_hits};
+use varikernel::scene::Scene;
+use varikernel::settings::{DirectLight, Estimate, PictureSettings, RadiusChoice};
+use varikernel::{Gl, Image};
+
+use super::Watch;
+use super::host::fail_at_each;
+
+fn beauty(gl: &Gl, settings: &PictureSettings, after: &dyn Fn(&str)) -> Image<[f32; 3]> {
+    let scene = Scene::shipped("cornell-glass").unwrap();
+    let photons = crate::stage::traced(&scene, 500, 1);
+    let mut renderer = Renderer::with_photons(gl, &scene, settings, &photons).unwrap();
+    after("Renderer::with_photons");
+    let (layers, _) = renderer.picture(settings).unwrap();
+    after("Renderer::picture");
+    renderer.surfaces().read_albedo().unwrap();
+    after("SurfaceMaps::read_albedo");
+    layers.beauty
+}
+
+pub(super) fn all(watch: &Watch<'_>) {
+    let usual = PictureSettings { size: UVec2::splat(20), light_samples: 1, ..PictureSettings::default() };
+    // A picture under the host's state is that of an untouched context, and leaves that state alone.
+    for settings in [
+        usual,
+        PictureSettings {
+            estimate: Estimate::Gather { count_correction: false },
+            radius: RadiusChoice::Fixed(2),
+            direct: DirectLight::ShadowMap,
+            ..usual
+        },
+    ] {
+        // A context is current on its own thread alone.
+        let untouched = std::thread::spawn(move || beauty(&crate::support::egl(), &settings, &|_| ()));
+        let untouched = untouched.join().unwrap();
+        let found = beauty(&watch.gl, &settings, &|call| watch.unchanged(call));
+        let error = PictureError::between(&found, &untouched);
+        assert!(error.rmse < 1e-5, "{settings:?} under the host's state: {error:?}");
+    }
+    let scene = Scene::shipped("cornell-glass").unwrap();
+    let trace = TraceSettings { photons: 300, ..Default::default() };
+    let emission = Emission::new(&scene, &trace).unwrap();
+    first_hits(&watch.gl, &scene, &emission).unwrap();
+    watch.unchanged("first_hits");
+    stages(watch, &scene, &usual);
+
+    let photons = crate::stage::traced(&scene, 100, 1);
+    let small = PictureSettings { size: UVec2::splat(8), ..usual };
+    let failures = fail_at_each(
+        || {
+            let mut renderer = Renderer::with_photons(&watch.gl, &scene, &small, &photons)?;
+            renderer.picture(&small).map(drop)
+        },
+        |failure| watch.unchanged(&format!("a picture's failure {failure}")),
+    );
+    assert!(failures >= 12, "{failures}");
+}
+
+/// The stages of a picture apart.
+fn stages(watch: &Watch<'_>, scene: &Scene, settings: &PictureSettings) {
+    let photons = crate::stage::traced(scene, 300, 1);
+    let mut renderer = Renderer::with_photons(&watch.gl, scene, settings, &photons).unwrap();
+    renderer.warm_up(settings).unwrap();
+    watch.unchanged("Renderer::warm_up");
+    let mut stages = renderer.into_stages(settings).unwrap();
+    watch.unchanged("Renderer::into_stages");
+    stages.count().unwrap();
+    watch.unchanged("Stages::count");
+    stages.read_counts().unwrap();
+    watch.unchanged("Stages::read_counts");
+    stages.search().unwrap();
+    watch.unchanged("Stages::search");
+    stages.read_radii().unwrap();
+    watch.unchanged("Stages::read_radii");
+    for radius in [RadiusChoice::Variable, RadiusChoice::Fixed(2)] {
+        stages.splat(radius).unwrap().read().unwrap();
+        watch.unchanged("Stages::splat");
+    }
+    let irradiance = stages.gather().unwrap().read().unwrap();
+    watch.unchanged("Stages::gather");
+    stages.account(&irradiance).unwrap();
+    watch.unchanged("Stages::account");
+    stages.surfaces().read_position().unwrap();
+    stages.surfaces().read_normal().unwrap();
+    watch.unchanged("SurfaceMaps::read_normal");
+}
