@@ -290,16 +290,16 @@ impl Texture {
         Ok(Self { gl: gl.clone(), name, format, size, levels: 1, layers: None, ours: false })
     }
 
-    /// Wraps a texture with depth, of any depth format and of `size`, that stays the host's.
+    /// Wraps a texture with depth, of any depth format, that stays the host's.
     ///
     /// # Errors
     /// [`Error::Mismatch`] if it is none.
-    pub(crate) fn borrow_depth(gl: &Gl, name: glow::Texture, size: UVec2) -> Result<Self> {
+    pub(crate) fn borrow_depth(gl: &Gl, name: glow::Texture) -> Result<Self> {
         let glow = gl.glow();
-        let expected = format!("a GL_TEXTURE_2D with depth, of {} x {}", size.x, size.y);
-        let mismatch = |got: String| {
-            let expected = expected.clone();
-            Error::Mismatch { what: "host's depth texture", expected, got }
+        let mismatch = |got: String| Error::Mismatch {
+            what: "host's depth texture",
+            expected: "a GL_TEXTURE_2D with depth".to_owned(),
+            got,
         };
         // SAFETY: the context is current while the handle lives; a name of another target is an error that is asked for at
         // once.
@@ -313,25 +313,16 @@ impl Texture {
                     super::error_name(code)
                 )));
             }
-            [glow::TEXTURE_WIDTH, glow::TEXTURE_HEIGHT, glow::TEXTURE_DEPTH_SIZE]
-                .map(|parameter| glow.get_tex_level_parameter_i32(glow::TEXTURE_2D, 0, parameter))
+            [glow::TEXTURE_WIDTH, glow::TEXTURE_HEIGHT, glow::TEXTURE_DEPTH_SIZE].map(|parameter| {
+                glow.get_tex_level_parameter_i32(glow::TEXTURE_2D, 0, parameter).cast_unsigned()
+            })
         };
         if bits == 0 {
-            return Err(mismatch("one without depth".to_owned()));
-        }
-        if [width, height] != size.as_ivec2().to_array() {
-            return Err(mismatch(format!("{width} x {height}")));
+            return Err(mismatch("one without depth, or without an image at level 0".to_owned()));
         }
         // Whatever its bits, shaders read a float.
-        Ok(Self {
-            gl: gl.clone(),
-            name,
-            format: TextureFormat::Depth32Float,
-            size,
-            levels: 1,
-            layers: None,
-            ours: false,
-        })
+        let (format, size) = (TextureFormat::Depth32Float, UVec2::new(width, height));
+        Ok(Self { gl: gl.clone(), name, format, size, levels: 1, layers: None, ours: false })
     }
 
     /// The same texture for another reader; `self` stays its owner.

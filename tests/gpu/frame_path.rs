@@ -11,12 +11,13 @@ use std::ffi::{CStr, c_void};
 use glam::UVec2;
 use glow::HasContext as _;
 use varikernel::gl::TextureFormat;
-use varikernel::settings::{Edges, Method, Order, Search, Settings};
+use varikernel::settings::{Edges, IrradianceSettings, Method, Order, RadiusChoice, Search, Settings};
 use varikernel::{
-    AdaptivePipeline, Changed, CountBounds, DensityMap, Frame, Gl, Image, Mask, RadiusPipeline, StatePolicy,
-    reference,
+    AdaptivePipeline, Changed, CountBounds, DensityMap, Frame, Gl, Image, IrradiancePipeline, Mask,
+    PhotonPoints, RadiusPipeline, StatePolicy, reference,
 };
 
+use crate::host_picture::HostPicture;
 use crate::support::{random_map, search, working_candidates};
 
 /// A command that was called, its arguments, and what it answered.
@@ -220,6 +221,7 @@ fn check(gl: &Gl, frame: &str, log: &[Call]) {
 fn all_pipelines(gl: &Gl) {
     radius_pipelines(gl);
     adaptive_pipeline(gl);
+    irradiance_pipeline(gl);
 }
 
 fn radius_pipelines(gl: &Gl) {
@@ -270,6 +272,30 @@ fn adaptive_pipeline(gl: &Gl) {
         unsafe { gl.glow().finish() };
     }
     assert!(fetched >= 3, "a census was fetched in {fetched} frames");
+}
+
+fn irradiance_pipeline(gl: &Gl) {
+    let HostPicture { mut positions, mut surfaces, photons, view } = HostPicture::new(gl, SIZE);
+    for radius in [RadiusChoice::Variable, RadiusChoice::Fixed(2)] {
+        let settings = IrradianceSettings { radius, ..IrradianceSettings::default() };
+        let mut pipeline = IrradiancePipeline::new(gl, SIZE, settings).unwrap();
+        for _ in 0..2 {
+            let log = log_of(|| {
+                positions.render(&view).unwrap();
+                surfaces.set_view(view).unwrap();
+                pipeline.render(&surfaces, &photons).unwrap().texture()
+            });
+            check(gl, &format!("irradiance, {radius:?}"), &log);
+        }
+        let log = log_of(|| pipeline.add(&surfaces, &photons).unwrap().texture());
+        check(gl, "irradiance of more photons", &log);
+        let light = pipeline.irradiance().read().unwrap();
+        assert!(light.values().iter().any(|&[red, ..]| red > 0.0), "there is light");
+    }
+    let mut new_photons = PhotonPoints::new(gl);
+    new_photons.upload(&HostPicture::photons(100)).unwrap();
+    let log = log_of(|| new_photons.replace(&HostPicture::photons(99)).unwrap());
+    check(gl, "photons replaced", &log);
 }
 
 #[test]

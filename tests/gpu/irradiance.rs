@@ -277,7 +277,11 @@ fn positions_come_from_a_depth_buffer() {
     ]);
     let projection = reversed * flip * camera.projection(1.0, near, far);
     let reversed = View::from_matrices(camera.view(), projection, size).unwrap();
-    let mut maker = PositionMaker::new(&gl, size).unwrap();
+    let positions = |texture: glow::Texture, reversed: bool, zero_to_one: bool, view: &View| {
+        let mut maker = PositionMaker::borrow(&gl, HostDepth { texture, reversed, zero_to_one }).unwrap();
+        let position = maker.render(view).unwrap();
+        (maker, position)
+    };
     let mut pipeline = IrradiancePipeline::new(&gl, size, settings(RadiusChoice::Fixed(2))).unwrap();
     let expected = pipeline.render(&stand.surfaces, &points).unwrap().read().unwrap();
     let expected = rgb(&expected).map(|light| light.map(f64::from));
@@ -286,8 +290,7 @@ fn positions_come_from_a_depth_buffer() {
         // One pixel shows nothing.
         depth.set(20, 20, if is_reversed { 0.0 } else { 1.0 });
         let texture = texture(&gl, glow::DEPTH_COMPONENT32F, glow::DEPTH_COMPONENT, glow::FLOAT, &depth);
-        let depth = HostDepth { texture, reversed: is_reversed, zero_to_one: is_reversed };
-        let position = maker.from_depth(depth, &view).unwrap();
+        let (_maker, position) = positions(texture, is_reversed, is_reversed, &view);
         let host = HostSurfaces { position, normal: rgba32(&gl, &own.normal) };
         let surfaces = SurfaceMaps::borrow(&gl, view, host).unwrap();
         let found = surfaces.read_position().unwrap();
@@ -314,8 +317,7 @@ fn positions_come_from_a_depth_buffer() {
     // The other convention is told apart.
     let wrong = depth_of(&own.position, &view, false);
     let texture = texture(&gl, glow::DEPTH_COMPONENT32F, glow::DEPTH_COMPONENT, glow::FLOAT, &wrong);
-    let position =
-        maker.from_depth(HostDepth { texture, reversed: false, zero_to_one: true }, &view).unwrap();
+    let (_maker, position) = positions(texture, false, true, &view);
     let host = HostSurfaces { position, normal: rgba32(&gl, &own.normal) };
     let surfaces = SurfaceMaps::borrow(&gl, view, host).unwrap();
     let found = rgb(&pipeline.render(&surfaces, &points).unwrap().read().unwrap());
@@ -372,11 +374,10 @@ fn what_does_not_fit_is_refused_with_the_names_of_its_enums() {
     let depth = texture(&gl, glow::DEPTH_COMPONENT32F, glow::DEPTH_COMPONENT, glow::FLOAT, &depth);
     assert!(refused(view, position, depth).contains("GL_DEPTH_COMPONENT32F"));
 
-    let mut maker = PositionMaker::new(&gl, UVec2::splat(SIDE)).unwrap();
     let host = |texture| HostDepth { texture, reversed: false, zero_to_one: false };
-    let error = maker.from_depth(host(normal), &view).unwrap_err().to_string();
+    let error = PositionMaker::borrow(&gl, host(normal)).unwrap_err().to_string();
     assert!(error.contains("without depth"), "{error}");
-    let error = maker.from_depth(host(depth), &other).unwrap_err().to_string();
+    let error = PositionMaker::borrow(&gl, host(depth)).unwrap().render(&other).unwrap_err().to_string();
     assert_eq!(error, "view: expected 48 x 48, got 48 x 96");
 
     let small = UVec2::splat(8);

@@ -13,6 +13,7 @@ mod faults;
 mod frame_path;
 mod frames;
 mod host;
+mod host_picture;
 #[cfg(feature = "render")]
 mod irradiance;
 mod labels;

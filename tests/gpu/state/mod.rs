@@ -4,6 +4,7 @@
 
 mod calls;
 mod host;
+mod irradiance;
 #[cfg(feature = "render")]
 mod pictures;
 mod queries;
@@ -55,6 +56,19 @@ impl<'a> Watch<'a> {
         states
     }
 
+    /// A buffer of the host without room.
+    fn buffer(&self) -> glow::Buffer {
+        let glow = self.host.gl.glow();
+        // SAFETY: the context is current; a name becomes a buffer when it is bound.
+        unsafe {
+            let bound = glow.get_parameter_buffer(glow::ARRAY_BUFFER_BINDING);
+            let buffer = glow.create_buffer().unwrap();
+            glow.bind_buffer(glow::ARRAY_BUFFER, Some(buffer));
+            glow.bind_buffer(glow::ARRAY_BUFFER, bound);
+            buffer
+        }
+    }
+
     fn unchanged(&self, call: &str) {
         for ((name, before), (_, after)) in self.before.iter().zip(self.now()) {
             assert_eq!(*before, after, "{call} changed the host's {name}, {:?}", self.gl.state_policy());
@@ -95,6 +109,7 @@ fn check_restore(choice: &context::DeviceChoice) {
     assert_eq!(same, ["query: 0x8914", "query: 0x8c2f", "query: 0x88bf"], "every other state is unusual");
     let watch = Watch::new(&host, StatePolicy::Restore, textures, Some(&objects));
     calls::all(&watch);
+    irradiance::all(&watch);
     #[cfg(feature = "render")]
     pictures::all(&watch);
 }
@@ -104,6 +119,7 @@ fn check_defaults(choice: &context::DeviceChoice) {
     let host = Host::new(choice);
     let watch = Watch::new(&host, StatePolicy::Defaults, borrowed_textures(&host), None);
     calls::all(&watch);
+    irradiance::all(&watch);
     #[cfg(feature = "render")]
     pictures::all(&watch);
 }

@@ -1,9 +1,11 @@
 //! Every public call around pictures.
 
+use std::sync::Arc;
+
 use glam::UVec2;
 use varikernel::measure::PictureError;
 use varikernel::photon::{Emission, TraceSettings};
-use varikernel::render::{Renderer, first_hits};
+use varikernel::render::{Live, LiveSettings, Renderer, first_hits};
 use varikernel::scene::Scene;
 use varikernel::settings::{DirectLight, Estimate, PictureSettings, RadiusChoice};
 use varikernel::{Gl, Image};
@@ -48,6 +50,7 @@ pub(super) fn all(watch: &Watch<'_>) {
     first_hits(&watch.gl, &scene, &emission).unwrap();
     watch.unchanged("first_hits");
     stages(watch, &scene, &usual);
+    live(watch, &Arc::new(scene.clone()));
 
     let photons = crate::stage::traced(&scene, 100, 1);
     let small = PictureSettings { size: UVec2::splat(8), ..usual };
@@ -88,4 +91,26 @@ fn stages(watch: &Watch<'_>, scene: &Scene, settings: &PictureSettings) {
     stages.surfaces().read_position().unwrap();
     stages.surfaces().read_normal().unwrap();
     watch.unchanged("SurfaceMaps::read_normal");
+}
+
+/// A picture in the making.
+fn live(watch: &Watch<'_>, scene: &Arc<Scene>) {
+    let settings = LiveSettings { size: UVec2::splat(16), photons_per_step: 200, ..LiveSettings::new(scene) };
+    let mut live = Live::new(&watch.gl, Arc::clone(scene), settings).unwrap();
+    watch.unchanged("Live::new");
+    live.step().unwrap();
+    watch.unchanged("Live::step");
+    live.inspect(UVec2::splat(3)).unwrap();
+    watch.unchanged("Live::inspect");
+    live.read().unwrap();
+    watch.unchanged("Live::read");
+    let mut moved = settings;
+    moved.camera.position.x += 1.0;
+    moved.irradiance.radius = RadiusChoice::Fixed(2);
+    live.change(moved).unwrap();
+    live.step().unwrap();
+    watch.unchanged("Live::change");
+    moved.irradiance.radius = RadiusChoice::Fixed(0);
+    live.change(moved).unwrap_err();
+    watch.unchanged("Live::change that fails");
 }

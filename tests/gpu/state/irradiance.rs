@@ -1,0 +1,84 @@
+//! Every public call around photons and a host's g-buffer, those that fail included.
+
+use glam::UVec2;
+use varikernel::settings::{IrradianceSettings, Kernel, RadiusChoice};
+use varikernel::{
+    ChosenRadius, DensityStage, GatherStage, HostDepth, HostSurfaces, IrradiancePipeline, PhotonPoints,
+    PositionMaker, SplatStage, SurfaceMaps,
+};
+
+use super::host::fail_at_each;
+use super::{SIZE, Watch};
+use crate::host_picture::HostPicture;
+
+pub(super) fn all(watch: &Watch<'_>) {
+    let gl = &watch.gl;
+    let HostPicture { mut positions, mut surfaces, mut photons, view } = HostPicture::new(gl, SIZE);
+    watch.unchanged("PositionMaker, SurfaceMaps and PhotonPoints");
+    positions.render(&view).unwrap();
+    watch.unchanged("PositionMaker::render");
+    surfaces.set_view(view).unwrap();
+    photons.replace(&HostPicture::photons(500)).unwrap();
+    watch.unchanged("PhotonPoints::replace");
+    for radius in [RadiusChoice::Variable, RadiusChoice::Fixed(2)] {
+        let settings = IrradianceSettings { radius, ..IrradianceSettings::default() };
+        let mut pipeline = IrradiancePipeline::new(gl, SIZE, settings).unwrap();
+        watch.unchanged("IrradiancePipeline::new");
+        let light = pipeline.render(&surfaces, &photons).unwrap();
+        watch.unchanged("IrradiancePipeline::render");
+        let light = light.read().unwrap();
+        watch.unchanged("IrradianceMap::read");
+        assert!(light.values().iter().any(|&[red, ..]| red > 0.0), "{radius:?}: there is light");
+        pipeline.add(&surfaces, &photons).unwrap();
+        watch.unchanged("IrradiancePipeline::add");
+        pipeline.clear();
+        watch.unchanged("IrradiancePipeline::clear");
+    }
+    stages(watch, &surfaces, &photons);
+
+    // Calls that fail.
+    let mut other = IrradiancePipeline::new(gl, UVec2::ONE, IrradianceSettings::default()).unwrap();
+    assert!(other.render(&surfaces, &photons).is_err());
+    watch.unchanged("IrradiancePipeline::render that fails");
+    let [density, depth] = watch.textures;
+    let host = |texture| HostDepth { texture, reversed: false, zero_to_one: false };
+    assert!(PositionMaker::borrow(gl, host(density)).is_err());
+    watch.unchanged("PositionMaker::borrow that fails");
+    assert!(PositionMaker::borrow(gl, host(depth)).is_ok());
+    watch.unchanged("PositionMaker::borrow");
+    let host = HostSurfaces { position: density, normal: depth };
+    assert!(SurfaceMaps::borrow(gl, view, host).is_err());
+    watch.unchanged("SurfaceMaps::borrow that fails");
+    assert!(PhotonPoints::borrow(gl, watch.buffer(), 1_000_000).is_err());
+    watch.unchanged("PhotonPoints::borrow that fails");
+    let failures = fail_at_each(
+        || IrradiancePipeline::new(gl, SIZE, IrradianceSettings::default()),
+        |failure| watch.unchanged(&format!("IrradiancePipeline::new's failure {failure}")),
+    );
+    assert!(failures >= 12, "{failures}");
+    drop((positions, surfaces, photons, other));
+    watch.unchanged("dropping everything");
+}
+
+fn stages(watch: &Watch<'_>, surfaces: &SurfaceMaps, photons: &PhotonPoints) {
+    let gl = &watch.gl;
+    let radius = ChosenRadius::Fixed(2);
+    let mut density = DensityStage::new(gl, SIZE).unwrap();
+    watch.unchanged("DensityStage::new");
+    density.add(surfaces, photons).unwrap();
+    watch.unchanged("DensityStage::add");
+    density.read_counts().unwrap();
+    density.read_power().unwrap();
+    watch.unchanged("DensityStage::read_power");
+    let mut splat = SplatStage::new(gl, SIZE, Kernel::Cone, true).unwrap();
+    watch.unchanged("SplatStage::new");
+    splat.splat(surfaces, photons, radius).unwrap();
+    watch.unchanged("SplatStage::splat");
+    let mut gather = GatherStage::new(gl, SIZE, Kernel::Cone, true, false).unwrap();
+    watch.unchanged("GatherStage::new");
+    gather.gather(surfaces, &density, radius).unwrap();
+    watch.unchanged("GatherStage::gather");
+    density.clear();
+    splat.clear();
+    watch.unchanged("DensityStage::clear and SplatStage::clear");
+}
