@@ -3,7 +3,7 @@
 #![expect(unsafe_code, reason = "a debugger speaks OpenGL itself")]
 
 use std::cell::{Cell, RefCell};
-use std::ffi::{CStr, c_void};
+use std::ffi::c_void;
 use std::num::NonZeroU32;
 
 use glam::UVec2;
@@ -113,7 +113,8 @@ fn every_object_of_the_library_has_a_name() {
     let mut pipelines: Vec<_> = Method::ALL
         .into_iter()
         .flat_map(|method| {
-            let settings = Settings { method, limited_mask: true, ..Settings::default() };
+            let search = search(25, 16, Edges::Scale);
+            let settings = Settings { search, limited_mask: true, ..Settings::of(method) };
             [SatBuild::Scan, SatBuild::Doubling].map(|sat_build| Settings { sat_build, ..settings })
         })
         .map(|settings| RadiusPipeline::new(gl, SIZE, map.format(), settings).unwrap())
@@ -198,12 +199,14 @@ extern "system" fn listen(
     kind: u32,
     _: u32,
     _: u32,
-    _: i32,
+    length: i32,
     message: *const std::ffi::c_char,
     _: *const c_void,
 ) {
-    // SAFETY: a debug message ends with 0.
-    let message = unsafe { CStr::from_ptr(message) }.to_str().unwrap().to_owned();
+    // SAFETY: a debug message has this length.
+    let message =
+        unsafe { std::slice::from_raw_parts(message.cast::<u8>(), usize::try_from(length).unwrap_or(0)) };
+    let message = String::from_utf8_lossy(message).into_owned();
     match kind {
         glow::DEBUG_TYPE_PUSH_GROUP => GROUPS.with_borrow_mut(|groups| groups.push(Some(message))),
         glow::DEBUG_TYPE_POP_GROUP => GROUPS.with_borrow_mut(|groups| groups.push(None)),

@@ -3,7 +3,7 @@
 use glam::UVec2;
 use varikernel::gl::TextureFormat;
 use varikernel::reference::{self, Radii};
-use varikernel::settings::{Edges, Exactness, Method, Order, Search, Settings};
+use varikernel::settings::{Edges, Method, Order, SatBuild, Search, Settings, Storage};
 use varikernel::{
     AdaptivePipeline, Changed, CountBounds, DensityMap, Error, Frame, Image, Mask, MaskMaker, RadiusMap,
     RadiusPipeline,
@@ -159,11 +159,8 @@ fn failing(watch: &Watch<'_>) {
     let mask = Mask::upload(gl, &Image::filled(SIZE, 1)).unwrap();
     assert!(pipeline.update(&Frame { mask: Some(&mask), ..Frame::new(&map) }).is_err());
     watch.unchanged("RadiusPipeline::update with a mask that is not expected");
-    let settings = Settings {
-        exactness: Exactness::Required,
-        storage: varikernel::settings::Storage::F16,
-        ..bracketed()
-    };
+    let (storage, sat_build) = (Storage::F32, SatBuild::Doubling);
+    let settings = Settings { search: question(), storage, sat_build, ..Settings::default() };
     let mut rounding = RadiusPipeline::new(gl, SIZE, map.format(), settings).unwrap();
     let unknown = DensityMap::borrow(gl, watch.textures[0], CountBounds::UNKNOWN).unwrap();
     assert!(matches!(rounding.render(&unknown), Err(Error::Inexact { .. })));
@@ -200,7 +197,7 @@ fn failing_half_way(watch: &Watch<'_>) {
     let map = map(watch);
     let failures = fail_at_each(
         || {
-            let mut pipeline = pipeline(watch);
+            let mut pipeline = RadiusPipeline::new(gl, SIZE, format, bracketed())?;
             pipeline.render(&map)?;
             pipeline.certify(&map)
         },

@@ -197,6 +197,9 @@ fn a_stencil_reference_is_kept_that_cannot_be_asked_for() {
             let (target, attachment) = (glow::DRAW_FRAMEBUFFER, glow::DEPTH_STENCIL_ATTACHMENT);
             let texture = attached.then_some(textures[1]);
             glow.framebuffer_texture_2d(target, attachment, glow::TEXTURE_2D, texture, 0);
+            // A driver sees what is attached when it is asked whether that is complete.
+            let is_complete = glow.check_framebuffer_status(target) == glow::FRAMEBUFFER_COMPLETE;
+            assert_eq!(is_complete, attached);
             glow.get_parameter_i32(glow::STENCIL_REF)
         };
         // SAFETY: the context is current.

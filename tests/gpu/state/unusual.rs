@@ -116,6 +116,11 @@ impl Host {
                 let texture = Some(objects.textures[0]);
                 glow.framebuffer_texture_2d(target, attachment, glow::TEXTURE_2D, texture, 0);
             }
+            // A driver tells the stencil reference where there is a stencil, which it sees when it is asked for the status.
+            let (target, attachment) = (glow::DRAW_FRAMEBUFFER, glow::DEPTH_STENCIL_ATTACHMENT);
+            let texture = Some(objects.textures[1]);
+            glow.framebuffer_texture_2d(target, attachment, glow::TEXTURE_2D, texture, 0);
+            assert_eq!(glow.check_framebuffer_status(target), glow::FRAMEBUFFER_COMPLETE);
             let buffers: Vec<_> =
                 (0..DRAW_BUFFERS).rev().map(|index| glow::COLOR_ATTACHMENT0 + index).collect();
             glow.draw_buffers(&buffers);
