@@ -18,7 +18,7 @@ use glam::UVec2;
 
 use crate::error::{Error, Result};
 use crate::exactness::CountBounds;
-use crate::gl::{Gl, StateGuard, Target, Texture, TextureFormat};
+use crate::gl::{Gl, StateGuard, Target, TargetShape, Texture, TextureFormat, TextureShape};
 use crate::image::Image;
 
 /// Photons per pixel: a GL_R32UI or GL_R8UI texture, or a GL_R32F one as additive blending of points fills it.
@@ -109,13 +109,18 @@ pub struct RadiusMap {
 }
 
 impl RadiusMap {
-    /// An empty map, with a second plane for the mask if wanted.
-    pub(crate) fn new(gl: &Gl, size: UVec2, limited_mask: bool) -> Result<Self> {
-        let mut textures = vec![Texture::new(gl, TextureFormat::R32Uint, size, 1)?];
+    /// The planes of a map, a second one for the mask if wanted.
+    pub(crate) fn shape(size: UVec2, limited_mask: bool) -> TargetShape {
+        let mut shape = vec![TextureShape::new(TextureFormat::R32Uint, size)];
         if limited_mask {
-            textures.push(Texture::new(gl, TextureFormat::R8Uint, size, 1)?);
+            shape.push(TextureShape::new(TextureFormat::R8Uint, size));
         }
-        Ok(Self { target: Target::new(gl, textures)? })
+        shape
+    }
+
+    /// The map that a target of such a shape is.
+    pub(crate) fn of(target: Target) -> Self {
+        Self { target }
     }
 
     /// Uses radii that the host found by itself, and the GL_R8UI mask of limited pixels if it has one, to be certified;

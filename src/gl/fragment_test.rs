@@ -44,6 +44,7 @@ pub(crate) fn fill_where(
     target: &mut Target,
 ) -> Result<()> {
     let _state = StateGuard::new(gl);
+    gl.current()?;
     let _tests = Tests::save(gl);
     target.clear(&[0]);
     attach(gl, target, texture, test)?;
@@ -69,8 +70,10 @@ pub(crate) fn fill_where(
         }
     }
     let drawn = pass.fill(target);
-    // SAFETY: the framebuffer is bound by the pass, or by `attach`.
-    unsafe { detach(gl, test) };
+    if !gl.is_lost() {
+        // SAFETY: the framebuffer is bound by the pass, or by `attach`.
+        unsafe { detach(gl, test) };
+    }
     drawn
 }
 
@@ -176,7 +179,7 @@ impl Tests {
 
 impl Drop for Tests {
     fn drop(&mut self) {
-        let glow = self.gl.glow();
+        let Some(glow) = self.gl.live() else { return };
         // SAFETY: the context is current while the handle lives; every value was read from it.
         unsafe {
             for (capability, enabled) in CAPABILITIES.into_iter().zip(self.enabled) {

@@ -5,7 +5,7 @@ use glam::{UVec2, Vec4};
 use glow::HasContext as _;
 
 use super::pass::{Pass, Target};
-use super::{Gl, Texture, TextureFormat, gl_error};
+use super::{Gl, Texture, TextureFormat};
 use crate::error::Result;
 
 /// Vertices of f32 attributes, on the GPU: one vertex each for points and triangles, one quad each for instances.
@@ -16,6 +16,7 @@ pub(crate) struct Vertices {
     /// Attributes advance with each vertex, and with each instance.
     arrays: [Option<glow::VertexArray>; 2],
     count: i32,
+    bytes: u64,
 }
 
 impl Vertices {
@@ -31,14 +32,16 @@ impl Vertices {
         let floats: i32 = components.iter().map(|&count| i32::from(count)).sum();
         assert_eq!(floats * 4, stride, "attributes make up a vertex");
         let count = i32::try_from(vertices.len()).expect("fewer than 2^31 vertices in a buffer");
-        let mut owned = Self { gl: gl.clone(), buffer: None, arrays: [None; 2], count };
-        let glow = gl.glow();
+        let mut owned = Self { gl: gl.clone(), buffer: None, arrays: [None; 2], count, bytes: 0 };
+        let glow = gl.current()?;
         // SAFETY: the context is current while the handle lives; the buffer holds `count` vertices of `stride` bytes, and
         // each attribute lies inside of one.
         unsafe {
-            let failed = |what: String| gl_error(glow, &what);
+            let failed = |what: String| gl.failure(&what);
             owned.buffer = Some(glow.create_buffer().map_err(failed)?);
             glow.bind_buffer(glow::ARRAY_BUFFER, owned.buffer);
+            owned.bytes = size_of_val(vertices) as u64;
+            gl.inner.buffer_bytes.set(gl.buffer_bytes() + owned.bytes);
             glow.buffer_data_u8_slice(glow::ARRAY_BUFFER, bytemuck::cast_slice(vertices), glow::STATIC_DRAW);
             for (divisor, array) in (0..).zip(&mut owned.arrays) {
                 *array = Some(glow.create_vertex_array().map_err(failed)?);
@@ -53,7 +56,7 @@ impl Vertices {
                 }
             }
         }
-        gl.check("uploading vertices")?;
+        gl.check_allocation("uploading vertices", Some(owned.bytes))?;
         Ok(owned)
     }
 
@@ -65,7 +68,8 @@ impl Vertices {
 
 impl Drop for Vertices {
     fn drop(&mut self) {
-        let glow = self.gl.glow();
+        self.gl.inner.buffer_bytes.set(self.gl.buffer_bytes() - self.bytes);
+        let Some(glow) = self.gl.live() else { return };
         // SAFETY: the context is current while the handle lives, and the names are ours.
         unsafe {
             for array in self.arrays.into_iter().flatten() {
@@ -91,7 +95,7 @@ impl Target {
     /// Sets the textures, of f32, to a value each, and the depth to the farthest.
     pub(crate) fn clear_floats(&mut self, values: &[Vec4]) {
         assert_eq!(values.len(), self.textures().len(), "a value for each texture");
-        let glow = self.texture().gl().glow();
+        let Some(glow) = self.texture().gl().live() else { return };
         // SAFETY: the context is current while the handle lives, and the draw buffers are f32 ones.
         unsafe {
             glow.bind_framebuffer(glow::DRAW_FRAMEBUFFER, Some(self.framebuffers[0]));
@@ -105,7 +109,7 @@ impl Target {
     /// Sets the depth to the farthest, if there is one.
     pub(crate) fn clear_depth(&mut self) {
         if self.depth.is_some() {
-            let glow = self.texture().gl().glow();
+            let Some(glow) = self.texture().gl().live() else { return };
             // SAFETY: the context is current while the handle lives.
             unsafe {
                 glow.bind_framebuffer(glow::DRAW_FRAMEBUFFER, Some(self.framebuffers[0]));

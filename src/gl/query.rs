@@ -2,7 +2,7 @@
 
 use glow::HasContext as _;
 
-use super::{Gl, gl_error};
+use super::Gl;
 use crate::error::Result;
 
 /// A query of one kind, to be used again and again.
@@ -32,9 +32,17 @@ impl Query {
         Self::new(gl, glow::TIME_ELAPSED)
     }
 
+    /// Nanoseconds since some moment: those of GL_TIMESTAMP.
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`](crate::Error::OutOfMemory).
+    pub(super) fn of_moments(gl: &Gl) -> Result<Self> {
+        Self::new(gl, glow::TIMESTAMP)
+    }
+
     fn new(gl: &Gl, target: u32) -> Result<Self> {
         // SAFETY: the context is current while the handle lives.
-        let name = unsafe { gl.glow().create_query() }.map_err(|what| gl_error(gl.glow(), &what))?;
+        let name = unsafe { gl.current()?.create_query() }.map_err(|what| gl.failure(&what))?;
         Ok(Self { gl: gl.clone(), name, target })
     }
 
@@ -56,19 +64,36 @@ impl Query {
     /// [`Error::Gl`](crate::Error::Gl) if another query of the kind is running.
     pub(super) fn begin(&self) -> Result<()> {
         // SAFETY: the context is current while the handle lives.
-        unsafe { self.gl.glow().begin_query(self.target, self.name) };
+        unsafe { self.gl.current()?.begin_query(self.target, self.name) };
         self.gl.check("beginning a query; one of the host's may be running")
     }
 
     /// Ends what [`begin`](Self::begin) began.
     pub(super) fn end(&self) {
+        let Some(glow) = self.gl.live() else { return };
         // SAFETY: the context is current while the handle lives.
-        unsafe { self.gl.glow().end_query(self.target) };
+        unsafe { glow.end_query(self.target) };
     }
 
-    /// Waits for the result.
+    /// Takes the time at which the GPU has done all commands before this one. No query of another kind is disturbed.
+    pub(super) fn stamp(&self) {
+        let Some(glow) = self.gl.live() else { return };
+        // SAFETY: the context is current while the handle lives, and the query is one of timestamps.
+        unsafe { glow.query_counter(self.name, self.target) };
+    }
+
+    /// Whether the result has come; never waits.
+    pub(super) fn has_result(&self) -> bool {
+        self.get(glow::QUERY_RESULT_AVAILABLE) != 0
+    }
+
+    /// Waits for the result; 0 if the context is lost, which [`Gl::check`] tells.
     pub(super) fn result(&self) -> u64 {
-        let glow = self.gl.glow();
+        self.get(glow::QUERY_RESULT)
+    }
+
+    fn get(&self, parameter: u32) -> u64 {
+        let Some(glow) = self.gl.live() else { return 0 };
         let mut result = 0_u64;
         let address = (&raw mut result).expose_provenance();
         // SAFETY: no query buffer is bound, so the "offset" is the address of the result. (glow's plain reader of u64
@@ -80,7 +105,7 @@ impl Query {
                 glow.bind_buffer(glow::QUERY_BUFFER, None);
                 bound
             });
-            glow.get_query_parameter_u64_with_offset(self.name, glow::QUERY_RESULT, address);
+            glow.get_query_parameter_u64_with_offset(self.name, parameter, address);
             if let Some(bound) = query_buffer {
                 glow.bind_buffer(glow::QUERY_BUFFER, bound);
             }
@@ -91,7 +116,8 @@ impl Query {
 
 impl Drop for Query {
     fn drop(&mut self) {
+        let Some(glow) = self.gl.live() else { return };
         // SAFETY: the context is current while the handle lives, and the name is ours.
-        unsafe { self.gl.glow().delete_query(self.name) };
+        unsafe { glow.delete_query(self.name) };
     }
 }

@@ -64,9 +64,16 @@ struct Blending {
     equation: [u32; 2],
 }
 
-/// Saves the state above and sets the library's own; puts the saved one back when dropped.
+/// Saves the state above and sets the library's own; puts the saved one back when dropped. Nothing is there to save
+/// if the context is lost.
 #[derive(Debug)]
 pub(crate) struct StateGuard {
+    /// Put back when dropped.
+    _saved: Option<Saved>,
+}
+
+#[derive(Debug)]
+struct Saved {
     gl: Gl,
     program: Option<glow::Program>,
     vertex_array: Option<glow::VertexArray>,
@@ -91,10 +98,10 @@ impl StateGuard {
     /// Saves the host's state and sets what every pass and transfer relies on.
     pub(crate) fn new(gl: &Gl) -> Self {
         gl.forget_errors();
-        let guard = Self::save(gl);
+        let Some(glow) = gl.live() else { return Self { _saved: None } };
+        let saved = Saved::of(gl, glow);
         // SAFETY: the context is current while the handle lives.
         unsafe {
-            let glow = gl.glow();
             for capability in CAPABILITIES {
                 glow.disable(capability);
             }
@@ -109,11 +116,12 @@ impl StateGuard {
                 glow.pixel_store_i32(parameter, value);
             }
         }
-        guard
+        Self { _saved: Some(saved) }
     }
+}
 
-    fn save(gl: &Gl) -> Self {
-        let glow = gl.glow();
+impl Saved {
+    fn of(gl: &Gl, glow: &glow::Context) -> Self {
         // SAFETY: the context is current while the handle lives; each buffer has room for its state's values.
         unsafe {
             let active_texture = glow.get_parameter_i32(glow::ACTIVE_TEXTURE).cast_unsigned();
@@ -161,9 +169,9 @@ impl StateGuard {
     }
 }
 
-impl Drop for StateGuard {
+impl Drop for Saved {
     fn drop(&mut self) {
-        let glow = self.gl.glow();
+        let Some(glow) = self.gl.live() else { return };
         // SAFETY: the context is current while the handle lives; every value was read from it.
         unsafe {
             for ((parameter, _), value) in PIXEL_STORE.into_iter().zip(self.pixel_store) {

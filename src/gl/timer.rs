@@ -73,8 +73,8 @@ impl Timer {
     /// # Errors
     /// Those of `work`, and [`Error::Gl`](crate::Error::Gl) if the query fails.
     pub fn time<T>(&mut self, work: impl FnOnce() -> Result<T>) -> Result<(T, Sample)> {
-        let glow = self.gl.glow();
         let _state = StateGuard::new(&self.gl);
+        let glow = self.gl.current()?;
         if let Some(frame) = &mut self.llvmpipe_frame {
             frame.clear(&[0]);
         }
@@ -90,8 +90,10 @@ impl Timer {
         let start = Instant::now();
         let result = work();
         self.query.end();
-        // SAFETY: as above.
-        unsafe { glow.finish() };
+        if !self.gl.is_lost() {
+            // SAFETY: as above.
+            unsafe { glow.finish() };
+        }
         let wall = start.elapsed();
         let nanoseconds = self.query.result();
         let result = result?;

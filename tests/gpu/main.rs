@@ -5,15 +5,18 @@
 mod approximate;
 #[cfg(feature = "render")]
 mod bounce_map;
+mod calls;
 mod certificate;
 #[cfg(feature = "render")]
 mod density;
+mod driver;
 mod exactness;
 mod faults;
 mod frames;
 mod host;
 #[cfg(feature = "render")]
 mod leaks;
+mod memory;
 mod objects;
 #[cfg(feature = "render")]
 mod picture;
