@@ -163,7 +163,11 @@ fn shape(size: UVec2) -> TargetShape {
 
 /// What a certificate allocates, where one is possible.
 pub(crate) fn shapes(size: UVec2, settings: &Settings) -> Vec<TargetShape> {
-    if Certificate::check_possible(settings).is_ok() && !settings.masked { vec![shape(size)] } else { Vec::new() }
+    if Certificate::check_possible(settings).is_ok() && !settings.masked {
+        vec![shape(size)]
+    } else {
+        Vec::new()
+    }
 }
 
 /// The shaders that a certificate may compile.

@@ -79,7 +79,19 @@
 //!
 //! Nothing else is touched. GL errors that were pending are taken and logged, so that they are not blamed on the call. A host
 //! may not call while transform feedback or conditional rendering is active, which would swallow the draws; a host's own
-//! queries (samples passed, time elapsed) count our work as well. Objects may be dropped in any order while the context is current.
+//! queries (samples passed, time elapsed) count our work as well.
+//!
+//! # Memory, sizes, and the end of a context
+//! [`RadiusPipeline::memory_required`] says how many bytes a pipeline takes before there is a context, and
+//! [`RadiusPipeline::resize`] moves one to another size of maps without compiling anything. GL_OUT_OF_MEMORY is
+//! [`Error::OutOfMemory`]: what the call had made is freed, and what was there before is still good.
+//!
+//! Objects may be dropped in any order while the context is current. A host that destroys its context first calls
+//! [`Gl::abandon`] before: from then on nothing calls OpenGL, drops delete nothing, and calls answer [`Error::ContextLost`], as
+//! they do when the driver reports GL_CONTEXT_LOST. Dropping without a current context and without that word does
+//! nothing on Mesa, but may crash on drivers whose commands belong to a context, as on Windows.
+//!
+//! [`gl::StageTimes`] tells how long each pass takes on the GPU, without waiting and beside a host's own GL_TIME_ELAPSED query.
 //!
 //! # Glossary
 //! | word | meaning |
@@ -149,5 +161,5 @@ pub use gl::Gl;
 pub use image::Image;
 pub use maps::{DensityMap, RadiusMap};
 pub use mask::{Mask, MaskMaker};
-pub use pipeline::RadiusPipeline;
+pub use pipeline::{MemoryRequired, RadiusPipeline};
 pub use settings::Settings;

@@ -35,7 +35,7 @@ impl DensityMap {
     /// Makes a texture of `counts`.
     ///
     /// # Errors
-    /// [`Error::TooLarge`]; [`Error::Gl`] when memory runs out.
+    /// [`Error::TooLarge`]; [`Error::OutOfMemory`].
     pub fn upload(gl: &Gl, counts: &Image<u32>, bounds: CountBounds) -> Result<Self> {
         let _state = StateGuard::new(gl);
         let texture = Texture::new(gl, TextureFormat::R32Uint, counts.size(), 1)?;

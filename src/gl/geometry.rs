@@ -23,7 +23,7 @@ impl Vertices {
     /// Uploads `vertices`, whose f32 fields are attributes 0, 1, ... of as many components as `components` says.
     ///
     /// # Errors
-    /// [`Error::Gl`](crate::Error::Gl) when memory runs out.
+    /// [`Error::OutOfMemory`](crate::Error::OutOfMemory).
     ///
     /// # Panics
     /// If the components do not make up a vertex: our own mistake.

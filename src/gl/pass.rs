@@ -179,9 +179,10 @@ impl Targets {
         self.0.next().expect("a target for each shape")
     }
 
-    /// How many are left.
-    pub(crate) fn left(&self) -> usize {
-        self.0.len()
+    /// # Panics
+    /// If one is left, as [`take`](Self::take).
+    pub(crate) fn finish(self) {
+        assert_eq!(self.0.len(), 0, "a place for each target");
     }
 }
 

@@ -19,7 +19,7 @@ impl Query {
     /// Fragments that are drawn: those of GL_SAMPLES_PASSED, in framebuffers of one sample a pixel.
     ///
     /// # Errors
-    /// [`Error::Gl`](crate::Error::Gl) when memory runs out.
+    /// [`Error::OutOfMemory`](crate::Error::OutOfMemory).
     pub(crate) fn of_fragments(gl: &Gl) -> Result<Self> {
         Self::new(gl, glow::SAMPLES_PASSED)
     }
@@ -27,7 +27,7 @@ impl Query {
     /// Nanoseconds: those of GL_TIME_ELAPSED.
     ///
     /// # Errors
-    /// [`Error::Gl`](crate::Error::Gl) when memory runs out.
+    /// [`Error::OutOfMemory`](crate::Error::OutOfMemory).
     pub(super) fn of_time(gl: &Gl) -> Result<Self> {
         Self::new(gl, glow::TIME_ELAPSED)
     }

@@ -72,8 +72,9 @@ impl Readback {
                 glow::PixelPackData::BufferOffset(0),
             );
             glow.bind_buffer(glow::PIXEL_PACK_BUFFER, None);
-            let fence =
-                glow.fence_sync(glow::SYNC_GPU_COMMANDS_COMPLETE, 0).map_err(|what| self.gl.failure(&what))?;
+            let fence = glow
+                .fence_sync(glow::SYNC_GPU_COMMANDS_COMPLETE, 0)
+                .map_err(|what| self.gl.failure(&what))?;
             self.pending = Some((fence, size));
         }
         Ok(())

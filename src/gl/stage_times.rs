@@ -154,13 +154,11 @@ impl Recorder {
     /// A pass begins.
     pub(super) fn begin(&mut self, gl: &Gl, label: &str) {
         let (Some(frame), Some(glow)) = (&mut self.current, gl.live()) else { return };
-        let label = match self.labels.iter().position(|known| **known == *label) {
-            Some(known) => known,
-            None => {
-                self.labels.push(label.into());
-                self.labels.len() - 1
-            }
-        };
+        let known = self.labels.iter().position(|known| **known == *label);
+        let label = known.unwrap_or_else(|| {
+            self.labels.push(label.into());
+            self.labels.len() - 1
+        });
         let index = frame.stages.len();
         frame.stages.push((label, Duration::ZERO));
         if self.waits {

@@ -316,7 +316,8 @@ impl Texture {
     /// A framebuffer of ours is bound.
     pub(super) unsafe fn attach(&self, attachments: &mut impl Iterator<Item = u32>, level: u32) {
         let (glow, name, level) = (self.gl.glow(), Some(self.name), level.cast_signed());
-        let layers = self.shape.layers.map_or(vec![None], |layers| (0..layers.cast_signed()).map(Some).collect());
+        let layers =
+            self.shape.layers.map_or(vec![None], |layers| (0..layers.cast_signed()).map(Some).collect());
         for (layer, attachment) in layers.into_iter().zip(attachments) {
             // SAFETY: as the caller vouches; level and layer exist.
             unsafe {

@@ -57,7 +57,7 @@ impl Timer {
     /// Makes the query.
     ///
     /// # Errors
-    /// [`Error::Gl`](crate::Error::Gl) when memory runs out.
+    /// [`Error::OutOfMemory`](crate::Error::OutOfMemory).
     pub fn new(gl: &Gl) -> Result<Self> {
         let _state = StateGuard::new(gl);
         let llvmpipe_frame = if gl.info().is_llvmpipe() {

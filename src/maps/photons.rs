@@ -26,7 +26,7 @@ impl PhotonPoints {
     /// Adds photons; best many at once.
     ///
     /// # Errors
-    /// [`Error::Gl`](crate::Error::Gl) when memory runs out.
+    /// [`Error::OutOfMemory`](crate::Error::OutOfMemory).
     pub fn upload(&mut self, photons: &[PhotonPoint]) -> Result<()> {
         let _state = StateGuard::new(&self.gl);
         for chunk in photons.chunks(CHUNK) {

@@ -146,9 +146,7 @@ impl Bracketed {
             blocks.target = targets.take();
         }
         (self.tiles, self.tiles_before) = (targets.take(), targets.take());
-        if let Some(mask_tiles) = &mut self.mask_tiles {
-            mask_tiles.resize(targets);
-        }
+        self.mask_tiles.iter_mut().for_each(|mask_tiles| mask_tiles.resize(targets));
     }
 
     pub(super) fn estimate(

@@ -80,7 +80,8 @@ impl Calls {
     pub(crate) fn all(&self) -> Vec<(String, u64)> {
         let names = NAMES.lock().unwrap();
         let calls = now();
-        let since = names.iter().enumerate().map(|(index, (name, _))| (name, calls[index] - self.before[index]));
+        let since =
+            names.iter().enumerate().map(|(index, (name, _))| (name, calls[index] - self.before[index]));
         since.filter(|&(_, calls)| calls > 0).map(|(name, calls)| (name.clone(), calls)).collect()
     }
 

@@ -30,6 +30,9 @@ thread_local! {
     /// What glGetError answers next.
     pub(crate) static PENDING_ERROR: Cell<u32> = const { Cell::new(glow::NO_ERROR) };
 
+    /// What glGetError answers, and how many times it is asked before.
+    pub(crate) static LATER_ERROR: Cell<Option<(u32, u32)>> = const { Cell::new(None) };
+
     /// What GL_RENDERER is, if not the real one.
     pub(crate) static RENDERER: Cell<Option<&'static CStr>> = const { Cell::new(None) };
 }
@@ -37,7 +40,7 @@ thread_local! {
 /// Live textures, framebuffers, programs, shaders, samplers, vertex arrays, queries, buffers.
 pub(crate) fn live() -> [i64; 8] {
     [&TEXTURES, &FRAMEBUFFERS, &PROGRAMS, &SHADERS, &SAMPLERS, &VERTEX_ARRAYS, &QUERIES, &BUFFERS]
-        .map(|counter| counter.get())
+        .map(std::thread::LocalKey::get)
 }
 
 /// The first device that works, behind the wrappers; `command` is asked after them.
@@ -154,6 +157,14 @@ mod wrappers {
     }
 
     pub(super) extern "system" fn glGetError() -> u32 {
+        match LATER_ERROR.get() {
+            Some((0, code)) => {
+                LATER_ERROR.set(None);
+                PENDING_ERROR.set(code);
+            }
+            Some((answers, code)) => LATER_ERROR.set(Some((answers - 1, code))),
+            None => (),
+        }
         match PENDING_ERROR.replace(glow::NO_ERROR) {
             // SAFETY: as above.
             glow::NO_ERROR => forward("glGetError", |address| unsafe {
@@ -173,7 +184,6 @@ mod wrappers {
         }
     }
 
-    #[expect(clippy::too_many_arguments, reason = "as many as the command has")]
     pub(super) extern "system" fn glTexImage2D(
         target: u32,
         level: i32,
@@ -197,7 +207,6 @@ mod wrappers {
         });
     }
 
-    #[expect(clippy::too_many_arguments, reason = "as many as the command has")]
     pub(super) extern "system" fn glTexImage3D(
         target: u32,
         level: i32,

@@ -16,6 +16,7 @@ mod frames;
 mod host;
 #[cfg(feature = "render")]
 mod leaks;
+mod lost;
 mod memory;
 mod objects;
 #[cfg(feature = "render")]
@@ -28,6 +29,7 @@ mod shadow_map;
 mod splat;
 #[cfg(feature = "render")]
 mod stage;
+mod stage_times;
 mod state;
 mod support;
 #[cfg(feature = "render")]

@@ -63,7 +63,7 @@ fn memory_is_what_is_allocated() {
     let mut variants = exact_variants(search(9, 10, Edges::Scale));
     variants.extend([Method::NaiveMipmap, Method::AveragedMipmap].map(Settings::of));
     // A search that llvmpipe takes several passes for, which keep a second map.
-    let long = search(9, 128, Edges::Scale);
+    let long = search(9, 100, Edges::Scale);
     let long = Search { order: Order::Forward, ..long };
     variants.push(Settings { search: long, ..Settings::of(Method::BruteForce) });
     for settings in variants.clone() {
@@ -128,7 +128,9 @@ fn an_adaptive_pipeline_takes_what_it_says() {
     let gl = egl();
     // Dense, then thin: a map of this size is searched forward, and then by halving.
     let (dense, thin) = (Image::filled(UVec2::splat(65), 10), sparse_map(65, 65));
-    let map = |counts: &Image<u32>| DensityMap::upload(&gl, counts, CountBounds::of(counts, Settings::default().search));
+    let map = |counts: &Image<u32>| {
+        DensityMap::upload(&gl, counts, CountBounds::of(counts, Settings::default().search))
+    };
     let (dense, thin) = (map(&dense).unwrap(), map(&thin).unwrap());
     let settings = Settings::default();
     let required = AdaptivePipeline::memory_required(dense.size(), &settings).unwrap();
@@ -180,7 +182,8 @@ fn resizing_compiles_nothing_and_believes_nothing() {
         assert!(calls.of("glCompileShader") > 1 && calls.of("glLinkProgram") > 0, "they are counted");
         let radii = |pipeline: &mut RadiusPipeline, counts: &Image<u32>, changed| {
             let map = upload(counts);
-            let mask = settings.masked.then(|| Mask::upload(&gl, &Image::filled(counts.size(), 1_u8)).unwrap());
+            let mask =
+                settings.masked.then(|| Mask::upload(&gl, &Image::filled(counts.size(), 1_u8)).unwrap());
             let frame = Frame { changed, mask: mask.as_ref(), ..Frame::new(&map) };
             let radii = pipeline.update(&frame).unwrap();
             (radii.read().unwrap(), radii.read_limited().unwrap())
@@ -194,7 +197,10 @@ fn resizing_compiles_nothing_and_believes_nothing() {
             calls.restart();
             pipeline.resize(size).unwrap();
             let made = calls.of("glGenTextures");
-            assert_eq!(calls.of("glCompileShader") + calls.of("glLinkProgram") + calls.of("glCreateProgram"), 0);
+            assert_eq!(
+                calls.of("glCompileShader") + calls.of("glLinkProgram") + calls.of("glCreateProgram"),
+                0
+            );
             assert_eq!(made, calls.of("glDeleteTextures"), "as many as before");
             assert!(made > 0);
             calls.restart();
@@ -219,10 +225,12 @@ fn an_adaptive_pipeline_is_resized_while_a_census_is_on_its_way() {
     // SAFETY: a trampoline calls the command that it stands for.
     let gl = unsafe { driver::open_through(counted) };
     let question = Settings::default().search;
-    let upload = |counts: &Image<u32>| DensityMap::upload(&gl, counts, CountBounds::of(counts, question)).unwrap();
+    let upload =
+        |counts: &Image<u32>| DensityMap::upload(&gl, counts, CountBounds::of(counts, question)).unwrap();
     let (small, large) = (random_map(30, 20, 4), random_map(140, 150, 4));
     let (small_map, large_map) = (upload(&small), upload(&large));
-    let mut pipeline = AdaptivePipeline::new(&gl, small.size(), small_map.format(), Settings::default()).unwrap();
+    let mut pipeline =
+        AdaptivePipeline::new(&gl, small.size(), small_map.format(), Settings::default()).unwrap();
     pipeline.update(&Frame::new(&small_map)).unwrap();
     calls.restart();
     pipeline.resize(large.size()).unwrap();

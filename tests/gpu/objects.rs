@@ -6,7 +6,8 @@ use glam::UVec2;
 use glow::HasContext as _;
 use varikernel::settings::{Method, Order, Settings};
 use varikernel::{
-    AdaptivePipeline, CountBounds, DensityMap, Error, Frame, Image, Mask, MaskMaker, RadiusMap, RadiusPipeline, gl,
+    AdaptivePipeline, CountBounds, DensityMap, Error, Frame, Image, Mask, MaskMaker, RadiusMap,
+    RadiusPipeline, gl,
 };
 
 use crate::driver::{self, FAIL_AT, live};
@@ -54,7 +55,13 @@ fn every_object_is_freed_and_the_state_put_back_also_after_an_error() {
                 }
                 let error =
                     result.err().unwrap_or_else(|| panic!("{method:?}: the failure of call {call} is lost"));
-                assert!(matches!(error, Error::Gl { .. } | Error::Shader { .. } | Error::OutOfMemory { bytes: Some(1..), .. }), "{error}");
+                assert!(
+                    matches!(
+                        error,
+                        Error::Gl { .. } | Error::Shader { .. } | Error::OutOfMemory { bytes: Some(1..), .. }
+                    ),
+                    "{error}"
+                );
                 if let Error::Shader { source_text, .. } = &error {
                     assert!(source_text.contains("glsl/"), "{error}");
                 }
@@ -118,7 +125,8 @@ fn objects_may_be_dropped_in_any_order() {
         let map = DensityMap::upload(&gl, &counts, CountBounds::UNKNOWN).unwrap();
         let mask = Mask::upload(&gl, &Image::filled(size, 1_u8)).unwrap();
         let mut pipeline =
-            RadiusPipeline::new(&gl, size, map.format(), Settings { masked: true, ..Settings::default() }).unwrap();
+            RadiusPipeline::new(&gl, size, map.format(), Settings { masked: true, ..Settings::default() })
+                .unwrap();
         pipeline.update(&Frame { mask: Some(&mask), ..Frame::new(&map) }).unwrap();
         let mut certified = RadiusPipeline::new(&gl, size, map.format(), Settings::default()).unwrap();
         let radii = certified.render(&map).unwrap().texture();
@@ -131,7 +139,7 @@ fn objects_may_be_dropped_in_any_order() {
         certified.render(&map).unwrap();
         let borrowed = RadiusMap::borrow(&gl, radii, None).unwrap();
         let maker = MaskMaker::new(&gl, size).unwrap();
-        let timer = gl::Timer::new(&gl).unwrap();
+        let stopwatch = gl::Timer::new(&gl).unwrap();
         assert!(live().iter().filter(|&&objects| objects > 0).count() >= 7, "{:?}", live());
         let objects: [Box<dyn std::any::Any>; OBJECTS] = [
             Box::new(gl),
@@ -143,7 +151,7 @@ fn objects_may_be_dropped_in_any_order() {
             Box::new(times),
             Box::new(borrowed),
             Box::new(maker),
-            Box::new(timer),
+            Box::new(stopwatch),
         ];
         let mut objects: Vec<_> = objects.into_iter().collect();
         objects.rotate_left(first);
@@ -174,7 +182,10 @@ fn a_failed_resize_changes_nothing() {
                 break;
             }
             let error = result.expect_err("a failure is lost");
-            assert!(matches!(error, Error::Gl { .. } | Error::OutOfMemory { bytes: Some(1..), .. }), "{error}");
+            assert!(
+                matches!(error, Error::Gl { .. } | Error::OutOfMemory { bytes: Some(1..), .. }),
+                "{error}"
+            );
             assert_eq!((live(), gl.texture_bytes()), (alive, bytes), "{method:?}, call {call}");
             assert_eq!(pipeline.size(), map.size());
             assert_eq!(pipeline.radii().read().unwrap(), found, "{method:?}, call {call}");

@@ -111,12 +111,12 @@ impl SummedAreaTable {
             None => Addition { program: Program::new(&gl, &addition_source(&self.settings))?, tables: None },
         };
         let Addition { program, tables } = self.addition.insert(addition);
-        let made = match tables.take() {
-            Some(tables) => tables,
-            None => {
-                let mut targets = Targets::new(&gl, &Self::addition_shapes(self.table.size(), &self.settings))?;
-                [targets.take(), targets.take()]
-            }
+        let made = if let Some(tables) = tables.take() {
+            tables
+        } else {
+            let shapes = Self::addition_shapes(self.table.size(), &self.settings);
+            let mut targets = Targets::new(&gl, &shapes)?;
+            [targets.take(), targets.take()]
         };
         let [added, spare] = tables.insert(made);
         let of_added = mean(density, &self.settings);
