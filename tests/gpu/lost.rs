@@ -4,6 +4,7 @@
 
 use std::any::Any;
 use std::ffi::c_void;
+use std::io::Write as _;
 use std::process::Command;
 
 use varikernel::gl::{StageTimes, Timer};
@@ -276,5 +277,5 @@ fn drop_without_context(abandoned: bool) {
         drop(object);
     }
     drop(gl);
-    eprintln!("dropped {count} objects and the handle");
+    writeln!(std::io::stderr(), "dropped {count} objects and the handle").unwrap();
 }
