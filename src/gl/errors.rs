@@ -68,7 +68,8 @@ impl Gl {
         self.error(code, what, None)
     }
 
-    fn error(&self, code: u32, what: &str, bytes: Option<u64>) -> Error {
+    /// What glGetError answered.
+    pub(super) fn error(&self, code: u32, what: &str, bytes: Option<u64>) -> Error {
         match code {
             _ if self.is_lost() => Error::ContextLost,
             glow::CONTEXT_LOST => {
@@ -76,7 +77,8 @@ impl Gl {
                 Error::ContextLost
             }
             glow::OUT_OF_MEMORY => {
-                let held = self.texture_bytes() + self.buffer_bytes();
+                // What was asked for is counted already, and about to be dropped.
+                let held = self.texture_bytes() + self.buffer_bytes() - bytes.unwrap_or(0);
                 Error::OutOfMemory { what: what.to_owned(), bytes, held }
             }
             _ => Error::Gl { code: error_name(code), what: what.to_owned() },

@@ -185,7 +185,7 @@ impl Gl {
         &self.inner.info
     }
 
-    /// The glow context, for a host's own calls beside the library's.
+    /// The glow context, for a host's own calls beside the library's; not to be called once it is [lost](Self::is_lost).
     #[must_use]
     pub fn glow(&self) -> &glow::Context {
         &self.inner.glow

@@ -9,7 +9,7 @@ use super::TextureFormat;
 pub(crate) struct TextureShape {
     pub(super) format: TextureFormat,
     /// Of level 0.
-    pub(super) size: UVec2,
+    pub(crate) size: UVec2,
     pub(super) levels: u32,
     /// Layers of an array.
     pub(super) layers: Option<u32>,

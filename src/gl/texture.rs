@@ -196,6 +196,9 @@ impl Texture {
             glow.active_texture(glow::TEXTURE0);
             glow.bind_texture(glow::TEXTURE_2D, Some(name));
             let code = glow.get_error();
+            if code == glow::CONTEXT_LOST {
+                return Err(gl.error(code, "binding a texture of the host", None));
+            }
             if code != glow::NO_ERROR {
                 let got = format!("a name that answers {} when bound there", super::error_name(code));
                 return Err(mismatch("a GL_TEXTURE_2D".to_owned(), got));

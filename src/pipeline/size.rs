@@ -57,6 +57,10 @@ impl RadiusPipeline {
         settings: &Settings,
     ) -> Result<MemoryRequired> {
         check_fits(device, size)?;
+        // The naive mipmap is larger than the map.
+        for texture in Structure::shapes(size, settings).iter().flatten() {
+            check_fits(device, texture.size)?;
+        }
         memory(size, settings, |settings| Ok(driver_limits::passes(device, settings)?.len()))
     }
 

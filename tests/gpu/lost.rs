@@ -190,8 +190,13 @@ fn a_loss_in_the_middle_of_a_call_is_told() {
         let gl = driver::open();
         let map = DensityMap::upload(&gl, &counts, CountBounds::UNKNOWN).unwrap();
         LATER_ERROR.set(Some((answer, glow::CONTEXT_LOST)));
-        let result = RadiusPipeline::new(&gl, map.size(), map.format(), Settings::default())
-            .and_then(|mut pipeline| pipeline.render(&map)?.read());
+        let result = RadiusPipeline::new(&gl, map.size(), map.format(), Settings::default()).and_then(
+            |mut pipeline| {
+                let radii = pipeline.render(&map)?;
+                DensityMap::borrow(&gl, radii.texture(), CountBounds::UNKNOWN)?;
+                radii.read()
+            },
+        );
         if LATER_ERROR.replace(None).is_some() {
             result.unwrap();
             break;
@@ -209,9 +214,13 @@ fn out_of_memory_says_how_much_was_asked_for_and_what_to_do() {
     let counts = random_map(12, 19, 3);
     let map = DensityMap::upload(&gl, &counts, CountBounds::UNKNOWN).unwrap();
     let before = live();
-    driver::FAIL_AT.set(Some(0));
     let size = glam::UVec2::new(100, 50);
-    let error = RadiusPipeline::new(&gl, size, map.format(), settings).unwrap_err();
+    // Shaders fail before the one texture does.
+    let mut failures = (0..9).map(|call| {
+        driver::FAIL_AT.set(Some(call));
+        RadiusPipeline::new(&gl, size, map.format(), settings).unwrap_err()
+    });
+    let error = failures.find(|error| matches!(error, Error::OutOfMemory { .. })).unwrap();
     let Error::OutOfMemory { bytes, held, .. } = &error else { panic!("{error}") };
     // Radii and counts are 4 bytes a pixel.
     assert_eq!((*bytes, *held), (Some(20_000), 4 * 12 * 19), "what failed is no longer held");

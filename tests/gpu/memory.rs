@@ -6,7 +6,8 @@ use glam::UVec2;
 use varikernel::gl::DeviceInfo;
 use varikernel::settings::{Edges, Method, Order, SatBuild, Search, Settings};
 use varikernel::{
-    AdaptivePipeline, Changed, CountBounds, DensityMap, Frame, Gl, Image, Mask, RadiusPipeline, reference,
+    AdaptivePipeline, Changed, CountBounds, DensityMap, Error, Frame, Gl, Image, Mask, RadiusPipeline,
+    reference,
 };
 
 use crate::calls::{Calls, counted};
@@ -88,6 +89,23 @@ fn memory_is_what_is_allocated() {
         }
     }
     assert_eq!(passes_matter, 4, "the long search alone, with and without a mask, in two sizes");
+}
+
+#[test]
+fn what_could_not_be_made_needs_no_memory() {
+    let gl = egl();
+    let limit = gl.info().max_texture_size;
+    let refusal =
+        |size, settings| RadiusPipeline::memory_required_on(gl.info(), size, &settings).unwrap_err();
+    let too_large = refusal(UVec2::new(1, limit + 1), Settings::default());
+    assert!(matches!(too_large, Error::TooLarge { .. }), "{too_large}");
+    // Its sides are powers of two.
+    let padded = DeviceInfo { max_texture_size: 100, ..gl.info().clone() };
+    let of = |method| RadiusPipeline::memory_required_on(&padded, UVec2::splat(100), &Settings::of(method));
+    assert!(matches!(of(Method::NaiveMipmap), Err(Error::TooLarge { limit: 100, .. })));
+    of(Method::Pyramid).unwrap();
+    let empty = RadiusPipeline::memory_required(UVec2::new(0, 4), &Settings::default()).unwrap_err();
+    assert!(matches!(empty, Error::Setting { name: "size", .. }), "{empty}");
 }
 
 #[test]
