@@ -6,10 +6,11 @@ use crate::error::Result;
 use crate::exactness::CountBounds;
 use crate::frame::{Changed, Frame};
 use crate::gl::{
-    Gl, Pass, Program, Readback, ShaderSource, StateGuard, Target, Texture, TextureFormat, glsl,
+    DeviceInfo, Gl, Pass, Program, Readback, ShaderSource, StateGuard, Target, TargetShape, TextureFormat,
+    TextureShape, bytes_of, glsl,
 };
 use crate::maps::RadiusMap;
-use crate::pipeline::RadiusPipeline;
+use crate::pipeline::{MemoryRequired, RadiusPipeline};
 use crate::planner::{self, CENSUS_SIDE, Census, Choice};
 use crate::settings::Settings;
 use crate::structure;
@@ -40,22 +41,64 @@ impl AdaptivePipeline {
     /// # Errors
     /// Those of [`RadiusPipeline::new`].
     pub fn new(gl: &Gl, size: UVec2, density_format: TextureFormat, settings: Settings) -> Result<Self> {
-        let choice = planner::choose(&settings, size, None, CountBounds::total_at_most(0));
+        let choice = first_choice(size, &settings);
         let pipeline = RadiusPipeline::new(gl, size, density_format, choice.settings)?;
         let _state = StateGuard::new(gl);
-        let texture = Texture::new(gl, TextureFormat::R32Uint, planner::tiles(size), 1)?;
+        let shape = census_shape(size);
         let adaptive = Self {
             gl: gl.clone(),
             pipeline,
             map_size: size,
             program: Program::new(gl, &census_source(density_format, &choice.settings))?,
-            counts: Target::single(gl, texture)?.labelled(&[CENSUS]),
+            counts: Target::of(gl, &shape)?,
             census: None,
-            readback: Readback::new(gl, CENSUS)?,
+            readback: Readback::new(gl, CENSUS, bytes_of(&[shape]))?,
             choice,
         };
         gl.check("setting up an adaptive pipeline")?;
         Ok(adaptive)
+    }
+
+    /// The memory of an adaptive pipeline for maps of `size`, as [`RadiusPipeline::memory_required`] says it: which orders of
+    /// the search are used depends on the photons, so that the other orders may be allocated or not. Nothing is
+    /// ever certified.
+    ///
+    /// # Errors
+    /// Those of [`RadiusPipeline::memory_required`].
+    pub fn memory_required(size: UVec2, settings: &Settings) -> Result<MemoryRequired> {
+        let pipeline = RadiusPipeline::memory_required(size, &first_choice(size, settings).settings)?;
+        Ok(with_census(size, pipeline))
+    }
+
+    /// As [`memory_required`](Self::memory_required), on a renderer that is known.
+    ///
+    /// # Errors
+    /// Those of [`RadiusPipeline::memory_required_on`].
+    pub fn memory_required_on(
+        device: &DeviceInfo,
+        size: UVec2,
+        settings: &Settings,
+    ) -> Result<MemoryRequired> {
+        let settings = first_choice(size, settings).settings;
+        Ok(with_census(size, RadiusPipeline::memory_required_on(device, size, &settings)?))
+    }
+
+    /// From now on for maps of `size`; see [`RadiusPipeline::resize`]. The next frame is planned without a census.
+    ///
+    /// # Errors
+    /// Those of [`RadiusPipeline::resize`].
+    pub fn resize(&mut self, size: UVec2) -> Result<()> {
+        if size == self.map_size {
+            return self.gl.current().map(drop);
+        }
+        let shape = census_shape(size.max(UVec2::ONE));
+        let _state = StateGuard::new(&self.gl);
+        let counts = Target::of(&self.gl, &shape)?;
+        let readback = Readback::new(&self.gl, CENSUS, bytes_of(&[shape]))?;
+        self.pipeline.resize(size)?;
+        (self.counts, self.readback) = (counts, readback);
+        (self.map_size, self.census) = (size, None);
+        Ok(())
     }
 
     /// Builds and searches what differs from the frame before; see [`RadiusPipeline::update`].
@@ -110,6 +153,21 @@ impl AdaptivePipeline {
         self.readback.begin(&self.counts)?;
         self.gl.check("taking a census")
     }
+}
+
+fn first_choice(size: UVec2, settings: &Settings) -> Choice {
+    planner::choose(settings, size, None, CountBounds::total_at_most(0))
+}
+
+/// A count for each tile.
+fn census_shape(size: UVec2) -> TargetShape {
+    vec![TextureShape::new(CENSUS, TextureFormat::R32Uint, planner::tiles(size))]
+}
+
+/// The census is a texture and a buffer of its size.
+fn with_census(size: UVec2, pipeline: MemoryRequired) -> MemoryRequired {
+    let census = 2 * bytes_of(&[census_shape(size)]);
+    MemoryRequired { at_creation: pipeline.at_creation + census, certificate: 0, ..pipeline }
 }
 
 fn census_source(density: TextureFormat, settings: &Settings) -> ShaderSource {

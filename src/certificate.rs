@@ -15,7 +15,9 @@ use glam::UVec2;
 
 use crate::error::{Error, Result};
 use crate::exactness::{self, Plan};
-use crate::gl::{Gl, Pass, Program, Query, ShaderSource, Target, Texture, TextureFormat, glsl};
+use crate::gl::{
+    Gl, Pass, Program, Query, ShaderSource, Target, TargetShape, TextureFormat, TextureShape, glsl,
+};
 use crate::maps::{DensityMap, RadiusMap};
 use crate::settings::{Edges, Exactness, Faults, Method, Settings};
 use crate::structure::{self, Structure};
@@ -83,8 +85,8 @@ struct Passes {
     with_limited: bool,
     radii: Program,
     entries: Program,
-    /// Never written to; a draw needs one.
-    target: Target,
+    /// Never written to; a draw needs one. None after a resize.
+    target: Option<Target>,
     unproved: Query,
 }
 
@@ -103,6 +105,7 @@ impl Certifier {
     ) -> Result<Certificate> {
         let search = self.settings.search;
         let Passes { radii: of_radii, entries, target, unproved, .. } = self.passes_for(radii)?;
+        let target = target.as_mut().expect("made with the passes");
         let table = structure.table().expect("only tables are certified");
         let pass = Pass::new(RADII, of_radii)
             .read("table", table)
@@ -123,25 +126,47 @@ impl Certifier {
         Ok(Certificate { unproved_radii, wrong_entries })
     }
 
+    /// From now on for maps of another size.
+    pub(crate) fn resize(&mut self) {
+        if let Some(passes) = &mut self.passes {
+            passes.target = None;
+        }
+    }
+
     fn passes_for(&mut self, radii: &RadiusMap) -> Result<&mut Passes> {
         let with_limited = radii.limited().is_some();
-        let passes = match self.passes.take() {
+        let mut passes = match self.passes.take() {
             Some(passes) if passes.with_limited == with_limited => passes,
-            _ => self.passes(radii.size(), with_limited)?,
+            _ => self.passes(with_limited)?,
         };
+        if passes.target.is_none() {
+            passes.target = Some(Target::of(&self.gl, &shape(radii.size()))?);
+        }
         Ok(self.passes.insert(passes))
     }
 
-    fn passes(&self, size: UVec2, with_limited: bool) -> Result<Passes> {
+    fn passes(&self, with_limited: bool) -> Result<Passes> {
         let Self { gl, density_format, settings, .. } = self;
         Ok(Passes {
             with_limited,
             radii: Program::new(gl, &radii_source(*density_format, settings, with_limited))?,
             entries: Program::new(gl, &entries_source(*density_format, settings))?,
-            target: Target::single(gl, Texture::new(gl, TextureFormat::R8Uint, size, 1)?)?
-                .labelled(&["certificate"]),
+            target: None,
             unproved: Query::of_fragments(gl)?,
         })
+    }
+}
+
+fn shape(size: UVec2) -> TargetShape {
+    vec![TextureShape::new("certificate", TextureFormat::R8Uint, size)]
+}
+
+/// What a certificate allocates, where one is possible.
+pub(crate) fn shapes(size: UVec2, settings: &Settings) -> Vec<TargetShape> {
+    if Certificate::check_possible(settings).is_ok() && !settings.masked {
+        vec![shape(size)]
+    } else {
+        Vec::new()
     }
 }
 

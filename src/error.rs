@@ -115,6 +115,30 @@ pub enum Error {
         kind: &'static str,
     },
 
+    /// GL_OUT_OF_MEMORY. What the call had made is freed, and what was there before is as it was.
+    #[error(
+        "OpenGL has no memory left for {what}{}; this library holds {held} bytes in this context\nhelp: ask for a smaller \
+         map, choose a method that holds less (`memory_required` says how much), or drop pipelines and maps that \
+         are no longer used",
+        bytes.map_or(String::new(), |bytes| format!(": {bytes} bytes"))
+    )]
+    OutOfMemory {
+        /// What was asked of it.
+        what: String,
+        /// How many bytes were asked for, where that is known.
+        bytes: Option<u64>,
+        /// Bytes of the textures and buffers that this library holds in the context.
+        held: u64,
+    },
+
+    /// The driver lost the context, as after a reset of the GPU, or the host gave it up
+    /// ([`Gl::abandon`](crate::Gl::abandon)). All objects in it are gone.
+    #[error(
+        "the OpenGL context is lost, and with it all maps and pipelines made in it\nhelp: make a new context, load it \
+         anew (`Gl::from_loader`), and make everything again"
+    )]
+    ContextLost,
+
     /// No context could be made on any device that was tried.
     #[error("{0}")]
     NoContext(String),

@@ -71,6 +71,18 @@
 //! OpenGL's default state, leaves it behind, and asks the driver for nothing. The page [`gl::state_contract`] lists all
 //! that is touched, and says what has to be current, what contexts share, and what of a host's queries.
 //!
+//! # Memory, sizes, and the end of a context
+//! [`RadiusPipeline::memory_required`] says how many bytes a pipeline takes before there is a context, and
+//! [`RadiusPipeline::resize`] moves one to another size of maps without compiling anything. GL_OUT_OF_MEMORY is
+//! [`Error::OutOfMemory`]: what the call had made is freed, and what was there before is still good.
+//!
+//! Objects may be dropped in any order while the context is current. A host that destroys its context first calls
+//! [`Gl::abandon`] before: from then on nothing calls OpenGL, drops delete nothing, and calls answer [`Error::ContextLost`], as
+//! they do when the driver reports GL_CONTEXT_LOST. Dropping without a current context and without that word does
+//! nothing on Mesa, but may crash on drivers whose commands belong to a context, as on Windows.
+//!
+//! [`gl::StageTimes`] tells how long each pass takes on the GPU, without waiting and beside a host's own GL_TIME_ELAPSED query.
+//!
 //! # Glossary
 //! | word | meaning |
 //! |---|---|
@@ -142,7 +154,7 @@ pub use irradiance::IrradiancePipeline;
 pub use maps::{ChosenRadius, DensityMap, HostSurfaces, IrradianceMap, PhotonPoints, RadiusMap, SurfaceMaps};
 pub use mask::{Mask, MaskMaker};
 pub use photon_point::PhotonPoint;
-pub use pipeline::RadiusPipeline;
+pub use pipeline::{MemoryRequired, RadiusPipeline};
 pub use position::{HostDepth, PositionMaker};
 pub use settings::Settings;
 pub use splat::{GatherStage, SplatStage};

@@ -12,7 +12,7 @@ use glam::UVec2;
 
 use crate::error::{Error, Result};
 use crate::exactness::CountBounds;
-use crate::gl::{Gl, StateGuard, Target, Texture, TextureFormat};
+use crate::gl::{Gl, StateGuard, Target, TargetShape, Texture, TextureFormat, TextureShape};
 use crate::image::Image;
 
 /// Photons per pixel: a GL_R32UI or GL_R8UI texture, or a GL_R32F one as additive blending of points fills it.
@@ -29,7 +29,7 @@ impl DensityMap {
     /// Makes a texture of `counts`.
     ///
     /// # Errors
-    /// [`Error::TooLarge`]; [`Error::Gl`] when memory runs out.
+    /// [`Error::TooLarge`]; [`Error::OutOfMemory`].
     pub fn upload(gl: &Gl, counts: &Image<u32>, bounds: CountBounds) -> Result<Self> {
         let _state = StateGuard::new(gl);
         let texture = Texture::new(gl, TextureFormat::R32Uint, counts.size(), 1)?.labelled("density map");
@@ -118,13 +118,18 @@ pub struct RadiusMap {
 }
 
 impl RadiusMap {
-    /// An empty map, with a second plane for the mask if wanted.
-    pub(crate) fn new(gl: &Gl, size: UVec2, limited_mask: bool) -> Result<Self> {
-        let mut textures = vec![Texture::new(gl, TextureFormat::R32Uint, size, 1)?];
+    /// The planes of a map, a second one for the mask if wanted.
+    pub(crate) fn shape(size: UVec2, limited_mask: bool) -> TargetShape {
+        let mut shape = vec![TextureShape::new("radius map", TextureFormat::R32Uint, size)];
         if limited_mask {
-            textures.push(Texture::new(gl, TextureFormat::R8Uint, size, 1)?);
+            shape.push(TextureShape::new("limited pixels", TextureFormat::R8Uint, size));
         }
-        Ok(Self { target: Target::new(gl, textures)?.labelled(&["radius map", "limited pixels"]) })
+        shape
+    }
+
+    /// The map that a target of such a shape is.
+    pub(crate) fn of(target: Target) -> Self {
+        Self { target }
     }
 
     /// Uses radii that the host found by itself, and the GL_R8UI mask of limited pixels if it has one, to be certified;

@@ -24,7 +24,7 @@ impl Mask {
     /// Makes a texture of `mask`.
     ///
     /// # Errors
-    /// [`Error::TooLarge`]; [`Error::Gl`] when memory runs out.
+    /// [`Error::TooLarge`]; [`Error::OutOfMemory`].
     pub fn upload(gl: &Gl, mask: &Image<u8>) -> Result<Self> {
         let _state = StateGuard::new(gl);
         let texture = Texture::new(gl, TextureFormat::R8Uint, mask.size(), 1)?.labelled("mask");
@@ -76,7 +76,7 @@ impl MaskMaker {
     /// Allocates and compiles for masks of `size`.
     ///
     /// # Errors
-    /// [`Error::TooLarge`]; [`Error::Shader`] if the driver refuses the shader; [`Error::Gl`] when memory runs out.
+    /// [`Error::TooLarge`]; [`Error::Shader`] if the driver refuses the shader; [`Error::OutOfMemory`].
     pub fn new(gl: &Gl, size: UVec2) -> Result<Self> {
         let _state = StateGuard::new(gl);
         let target =

@@ -1,6 +1,9 @@
 //! The stages in order: the one file that knows them all, and what a host engine calls.
 
+mod size;
+
 use glam::UVec2;
+pub use size::MemoryRequired;
 
 use crate::certificate::{self, Certificate, Certifier};
 use crate::driver_limits;
@@ -59,21 +62,12 @@ impl RadiusPipeline {
     ///
     /// # Errors
     /// [`Error::Setting`] outside a setting's range, [`Error::TooLarge`], [`Error::Shader`] if the driver refuses a
-    /// shader, [`Error::Gl`] when memory runs out.
+    /// shader, [`Error::OutOfMemory`] ([`memory_required`](Self::memory_required) says how much is needed),
+    /// [`Error::ContextLost`], [`Error::Gl`] if the driver fails otherwise.
     pub fn new(gl: &Gl, size: UVec2, density_format: TextureFormat, settings: Settings) -> Result<Self> {
         settings.validate()?;
         let passes = driver_limits::passes(gl.info(), &settings)?;
-        let limit = gl.info().max_texture_size;
-        if size.max_element() > limit {
-            return Err(Error::TooLarge { size, limit });
-        }
-        if size.min_element() == 0 {
-            return Err(Error::Setting {
-                name: "size",
-                value: format!("{} x {}", size.x, size.y),
-                reason: "a map has at least one pixel".to_owned(),
-            });
-        }
+        size::check_fits(gl.info(), size)?;
         let _state = StateGuard::new(gl);
         let pipeline = Self {
             gl: gl.clone(),
@@ -96,7 +90,7 @@ impl RadiusPipeline {
     /// # Errors
     /// [`Error::Mismatch`] if the map's size or format is another than the pipeline's; [`Error::Inexact`] if the
     /// map's bounds do not prove the result exact and [`Settings::exactness`] asks for that; [`Error::Gl`] if the
-    /// driver fails.
+    /// driver fails; [`Error::ContextLost`], from then on for every call.
     pub fn render(&mut self, density: &DensityMap) -> Result<&RadiusMap> {
         self.update(&Frame::new(density))
     }
@@ -327,6 +321,7 @@ impl RadiusPipeline {
     }
 
     fn check(&self, frame: &Frame<'_>) -> Result<()> {
+        self.gl.current()?;
         let density = frame.density;
         if density.size() == self.size && density.format() == self.density_format {
             return Ok(());

@@ -44,6 +44,7 @@ pub(crate) fn fill_where(
     target: &mut Target,
 ) -> Result<()> {
     let _state = StateGuard::new(gl);
+    gl.current()?;
     target.clear(&[0]);
     attach(gl, target, texture, test)?;
     let tests = match test {
@@ -73,8 +74,10 @@ pub(crate) fn fill_where(
     }
     let drawn = pass.fill(target);
     drop(tests);
-    // SAFETY: the framebuffer is bound by the pass, or by `attach`.
-    unsafe { detach(gl, test) };
+    if !gl.is_lost() {
+        // SAFETY: the framebuffer is bound by the pass, or by `attach`.
+        unsafe { detach(gl, test) };
+    }
     drawn
 }
 
@@ -102,10 +105,15 @@ fn attach(gl: &Gl, target: &Target, texture: glow::Texture, test: FragmentTest) 
             glow.framebuffer_texture_2d(glow::DRAW_FRAMEBUFFER, attachment, glow::TEXTURE_2D, None, 0);
         }
     }
+    if status == glow::CONTEXT_LOST {
+        return Err(gl.error(status, "attaching a texture of the host", None));
+    }
     let size = target.size();
     let got = match status {
         glow::FRAMEBUFFER_COMPLETE => "one of another size".to_owned(),
-        glow::INVALID_ENUM..=glow::CONTEXT_LOST => format!("one that answers {}", error_name(status)),
+        glow::INVALID_ENUM..=glow::INVALID_FRAMEBUFFER_OPERATION => {
+            format!("one that answers {}", error_name(status))
+        }
         _ => format!("framebuffer status {status:#06x}"),
     };
     let what = match test {

@@ -4,8 +4,8 @@ use bytemuck::Pod;
 use glam::{UVec2, Vec4};
 use glow::HasContext as _;
 
+use super::Gl;
 use super::pass::{Pass, Target};
-use super::{Gl, gl_error};
 #[cfg(feature = "render")]
 use super::{Texture, TextureFormat};
 use crate::error::{Error, Result};
@@ -18,6 +18,8 @@ pub(crate) struct Vertices {
     /// Attributes advance with each vertex, and with each instance.
     arrays: [Option<glow::VertexArray>; 2],
     count: i32,
+    /// What the buffer holds, if it is ours.
+    bytes: u64,
 }
 
 /// Where vertices lie.
@@ -31,26 +33,24 @@ impl Vertices {
     /// Uploads `vertices`, whose f32 fields are attributes 0, 1, ... of as many components as `components` says.
     ///
     /// # Errors
-    /// [`Error::Gl`] when memory runs out.
+    /// [`Error::OutOfMemory`].
     ///
     /// # Panics
     /// If the components do not make up a vertex: our own mistake.
     pub(crate) fn upload<V: Pod>(gl: &Gl, vertices: &[V], components: &[u8]) -> Result<Self> {
         assert_eq!(size_of::<V>(), vertex_bytes(components), "attributes make up a vertex");
-        let glow = gl.glow();
         // SAFETY: the context is current while the handle lives.
-        let buffer = unsafe { glow.create_buffer() }.map_err(|what| gl_error(glow, &what))?;
-        let mut owned = Self { gl: gl.clone(), buffer: Buffer::Ours(buffer), arrays: [None; 2], count: 0 };
+        let buffer = unsafe { gl.current()?.create_buffer() }.map_err(|what| gl.failure(&what))?;
+        let mut owned = Self::over(gl, Buffer::Ours(buffer));
         owned.replace(vertices)?;
         owned.describe(buffer, 0, components)?;
-        gl.check("describing vertices")?;
         Ok(owned)
     }
 
     /// Reads `count` vertices from `first` on of a buffer that stays the host's.
     ///
     /// # Errors
-    /// [`Error::Mismatch`] if it is no buffer, or has no room for them; [`Error::Gl`] when names run out.
+    /// [`Error::Mismatch`] if it is no buffer, or has no room for them; [`Error::OutOfMemory`].
     pub(crate) fn borrow(
         gl: &Gl,
         buffer: glow::Buffer,
@@ -65,7 +65,7 @@ impl Vertices {
             expected: format!("at least {needed} bytes"),
             got,
         };
-        let glow = gl.glow();
+        let glow = gl.current()?;
         // SAFETY: the context is current while the handle lives.
         let size = unsafe {
             if !glow.is_buffer(buffer) {
@@ -77,29 +77,36 @@ impl Vertices {
         if u64::from(size.cast_unsigned()) < needed {
             return Err(mismatch(format!("{} bytes", size.cast_unsigned())));
         }
-        let mut owned =
-            Self { gl: gl.clone(), buffer: Buffer::Hosts, arrays: [None; 2], count: signed(count) };
+        let mut owned = Self::over(gl, Buffer::Hosts);
+        owned.count = signed(count);
         let offset = bytes * u64::from(first);
         owned.describe(buffer, i32::try_from(offset).expect("within a buffer of 2^31 bytes"), components)?;
-        gl.check("describing a host's vertices")?;
         Ok(owned)
+    }
+
+    fn over(gl: &Gl, buffer: Buffer) -> Self {
+        Self { gl: gl.clone(), buffer, arrays: [None; 2], count: 0, bytes: 0 }
     }
 
     /// Puts other vertices in their place, of the same kind; the driver need not wait until the old ones are drawn.
     ///
     /// # Errors
-    /// [`Error::Gl`] when memory runs out.
+    /// [`Error::OutOfMemory`]; there are no vertices then.
     pub(crate) fn replace<V: Pod>(&mut self, vertices: &[V]) -> Result<()> {
         let Buffer::Ours(buffer) = self.buffer else {
             unreachable!("a host's vertices are the host's to change")
         };
-        let glow = self.gl.glow();
+        let glow = self.gl.current()?;
+        let total = &self.gl.inner.buffer_bytes;
+        self.count = 0;
+        total.set(total.get() - self.bytes + size_of_val(vertices) as u64);
+        self.bytes = size_of_val(vertices) as u64;
         // SAFETY: the context is current while the handle lives; the whole buffer is made anew.
         unsafe {
             glow.bind_buffer(glow::ARRAY_BUFFER, Some(buffer));
             glow.buffer_data_u8_slice(glow::ARRAY_BUFFER, bytemuck::cast_slice(vertices), glow::STREAM_DRAW);
         }
-        self.gl.check("uploading vertices")?;
+        self.gl.check_allocation("uploading vertices", Some(self.bytes))?;
         self.count = i32::try_from(vertices.len()).expect("fewer than 2^31 vertices in a buffer");
         Ok(())
     }
@@ -107,13 +114,13 @@ impl Vertices {
     /// Makes the vertex arrays over the buffer, from byte `first` on.
     fn describe(&mut self, buffer: glow::Buffer, first: i32, components: &[u8]) -> Result<()> {
         let stride = i32::try_from(vertex_bytes(components)).expect("few bytes");
-        let glow = self.gl.glow();
+        let glow = self.gl.current()?;
         // SAFETY: the context is current while the handle lives; each attribute lies inside of a vertex, and the vertices in
         // the buffer.
         unsafe {
             glow.bind_buffer(glow::ARRAY_BUFFER, Some(buffer));
             for (divisor, array) in (0..).zip(&mut self.arrays) {
-                *array = Some(glow.create_vertex_array().map_err(|what| gl_error(glow, &what))?);
+                *array = Some(glow.create_vertex_array().map_err(|what| self.gl.failure(&what))?);
                 glow.bind_vertex_array(*array);
                 let mut offset = first;
                 for (attribute, &count) in (0..).zip(components) {
@@ -125,7 +132,7 @@ impl Vertices {
                 }
             }
         }
-        Ok(())
+        self.gl.check("describing vertices")
     }
 
     /// Names buffer and arrays.
@@ -156,7 +163,8 @@ fn signed(count: u32) -> i32 {
 
 impl Drop for Vertices {
     fn drop(&mut self) {
-        let glow = self.gl.glow();
+        self.gl.inner.buffer_bytes.set(self.gl.buffer_bytes() - self.bytes);
+        let Some(glow) = self.gl.live() else { return };
         // SAFETY: the context is current while the handle lives, and the names are ours.
         unsafe {
             for array in self.arrays.into_iter().flatten() {
@@ -183,7 +191,7 @@ impl Target {
     /// Sets the textures, of f32, to a value each, and the depth to the farthest.
     pub(crate) fn clear_floats(&mut self, values: &[Vec4]) {
         assert_eq!(values.len(), self.textures().len(), "a value for each texture");
-        let glow = self.texture().gl().glow();
+        let Some(glow) = self.texture().gl().live() else { return };
         // SAFETY: the context is current while the handle lives, and the draw buffers are f32 ones.
         unsafe {
             glow.bind_framebuffer(glow::DRAW_FRAMEBUFFER, Some(self.framebuffers[0]));
@@ -197,7 +205,7 @@ impl Target {
     /// Sets the depth to the farthest, if there is one.
     pub(crate) fn clear_depth(&mut self) {
         if self.depth.is_some() {
-            let glow = self.texture().gl().glow();
+            let Some(glow) = self.texture().gl().live() else { return };
             // SAFETY: the context is current while the handle lives.
             unsafe {
                 glow.bind_framebuffer(glow::DRAW_FRAMEBUFFER, Some(self.framebuffers[0]));

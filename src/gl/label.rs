@@ -7,22 +7,22 @@ use super::{Gl, Target, Texture};
 impl Gl {
     /// Runs `work` inside a debug group that RenderDoc and apitrace show as `label`.
     pub(super) fn labelled<T>(&self, label: &str, work: impl FnOnce() -> T) -> T {
-        if !self.inner.names_things {
-            return work();
-        }
+        let Some(glow) = self.live().filter(|_| self.inner.names_things) else { return work() };
         // SAFETY: the context is current and has KHR_debug.
-        unsafe { self.glow().push_debug_group(glow::DEBUG_SOURCE_APPLICATION, 0, label) };
+        unsafe { glow.push_debug_group(glow::DEBUG_SOURCE_APPLICATION, 0, label) };
         let result = work();
-        // SAFETY: as above; the group was pushed a line ago.
-        unsafe { self.glow().pop_debug_group() };
+        if let Some(glow) = self.live() {
+            // SAFETY: as above; the group was pushed before the work.
+            unsafe { glow.pop_debug_group() };
+        }
         result
     }
 
     /// Names an object, which was bound at least once since it exists from then on.
     pub(super) fn label(&self, kind: u32, name: u32, label: &str) {
-        if self.inner.names_things {
+        if let Some(glow) = self.live().filter(|_| self.inner.names_things) {
             // SAFETY: the context is current and has KHR_debug; a label is no command to anything.
-            unsafe { self.glow().object_label(kind, name, Some(format!("varikernel: {label}"))) };
+            unsafe { glow.object_label(kind, name, Some(format!("varikernel: {label}"))) };
         }
     }
 

@@ -6,6 +6,7 @@
 #![expect(unsafe_code, reason = "OpenGL is a C interface; design rule 8 confines it to this module")]
 
 mod device_info;
+mod errors;
 mod fragment_test;
 mod geometry;
 mod label;
@@ -13,7 +14,9 @@ mod pass;
 mod program;
 mod query;
 mod readback;
+mod shape;
 mod source;
+mod stage_times;
 mod state;
 #[doc = include_str!("state_contract.md")]
 pub mod state_contract {}
@@ -23,12 +26,14 @@ mod timer;
 pub use device_info::DeviceInfo;
 pub(crate) use fragment_test::{FragmentTest, fill_where};
 pub(crate) use geometry::Vertices;
-pub(crate) use pass::{Pass, Target};
+pub(crate) use pass::{Pass, Target, Targets};
 pub(crate) use program::Program;
 pub(crate) use query::Query;
 pub(crate) use readback::Readback;
+pub(crate) use shape::{TargetShape, TextureShape, bytes_of};
 pub use source::ShaderSource;
 pub(crate) use source::glsl;
+pub use stage_times::StageTimes;
 pub(crate) use state::StateGuard;
 pub use state::StatePolicy;
 pub(crate) use texture::Texture;
@@ -36,15 +41,16 @@ pub use texture::TextureFormat;
 pub use timer::{Sample, Timer, time};
 
 use std::any::Any;
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 use std::ffi::{CStr, c_void};
 use std::fmt;
-use std::rc::Rc;
+use std::rc::{Rc, Weak};
 use std::sync::Arc;
 
 use glow::HasContext as _;
 
 use crate::error::{Error, Result};
+use errors::{error_name, gl_error};
 
 /// A handle to a current OpenGL 3.3 core context; cheap to clone, tied to its thread.
 #[derive(Clone)]
@@ -66,6 +72,12 @@ struct Inner {
     texture_bytes: Cell<u64>,
     /// Calls of ours that are under way, one inside of the other.
     state_guards: Cell<u32>,
+    /// What all buffers of ours hold together.
+    buffer_bytes: Cell<u64>,
+    /// Whether nothing may be called any more.
+    lost: Cell<bool>,
+    /// What times the passes, while a frame of it is recorded.
+    stage_times: RefCell<Weak<RefCell<stage_times::Recorder>>>,
     /// The context itself, when the library opened it. Last, so that it is dropped last.
     _context: Option<Box<dyn Any>>,
 }
@@ -83,7 +95,7 @@ impl Gl {
     /// # Safety
     /// `loader` returns the address of the named command in the context that is current on this thread, or
     /// null, and that context is current on this thread whenever the handle, its clones, or anything made
-    /// from them is used or dropped.
+    /// from them is used or dropped, until [`Gl::abandon`] was called.
     pub unsafe fn from_loader(loader: impl FnMut(&CStr) -> *const c_void) -> Result<Self> {
         // SAFETY: as the caller vouches.
         unsafe { Self::load(loader, None) }
@@ -118,7 +130,7 @@ impl Gl {
     ///
     /// # Safety
     /// The context behind `glow` is current on this thread whenever the handle, its clones, or anything made
-    /// from them is used or dropped.
+    /// from them is used or dropped, until [`Gl::abandon`] was called.
     pub unsafe fn from_glow(glow: Arc<glow::Context>) -> Result<Self> {
         // SAFETY: as the caller vouches.
         unsafe { Self::new(glow, None, true, None) }
@@ -168,6 +180,9 @@ impl Gl {
             nearest_mipmap,
             texture_bytes: Cell::new(0),
             state_guards: Cell::new(0),
+            buffer_bytes: Cell::new(0),
+            lost: Cell::new(false),
+            stage_times: RefCell::default(),
             _context: context,
         };
         let gl = Self { inner: Rc::new(inner), state_policy: StatePolicy::Restore };
@@ -194,7 +209,7 @@ impl Gl {
         &self.inner.info
     }
 
-    /// The glow context, for a host's own calls beside the library's.
+    /// The glow context, for a host's own calls beside the library's; not to be called once it is [lost](Self::is_lost).
     #[must_use]
     pub fn glow(&self) -> &glow::Context {
         &self.inner.glow
@@ -205,6 +220,13 @@ impl Gl {
     #[must_use]
     pub fn texture_bytes(&self) -> u64 {
         self.inner.texture_bytes.get()
+    }
+
+    /// Bytes of all buffers that the library has made in this context and not dropped: vertices, and texels on their way
+    /// back.
+    #[must_use]
+    pub fn buffer_bytes(&self) -> u64 {
+        self.inner.buffer_bytes.get()
     }
 
     fn vertex_array(&self) -> glow::VertexArray {
@@ -246,31 +268,14 @@ impl Gl {
         (version.major, version.minor) >= (4, 4)
     }
 
-    /// The oldest pending GL error as our error, if there is one.
-    ///
-    /// # Errors
-    /// [`Error::Gl`] with the enum's name.
-    pub(crate) fn check(&self, what: &str) -> Result<()> {
-        // SAFETY: the context is current while the handle lives.
-        match unsafe { self.glow().get_error() } {
-            glow::NO_ERROR => Ok(()),
-            code => {
-                self.forget_errors();
-                Err(Error::Gl { code: error_name(code), what: what.to_owned() })
-            }
-        }
-    }
-
-    /// Takes errors that somebody else left behind, so that they are not blamed on the call that follows.
-    pub(crate) fn forget_errors(&self) {
-        // A lost context answers with an error for ever.
-        for _ in 0..16 {
-            // SAFETY: the context is current while the handle lives.
-            match unsafe { self.glow().get_error() } {
-                glow::NO_ERROR => return,
-                code => tracing::warn!(code = error_name(code), "an OpenGL error was already pending"),
-            }
-        }
+    /// As [`labelled`](Self::labelled), and timed if a [`StageTimes`] is recording.
+    fn timed<T>(&self, label: &str, work: impl FnOnce() -> T) -> T {
+        let recorder = self.inner.stage_times.borrow().upgrade();
+        let Some(recorder) = recorder else { return self.labelled(label, work) };
+        recorder.borrow_mut().begin(self, label);
+        let result = self.labelled(label, work);
+        recorder.borrow_mut().end(self);
+        result
     }
 }
 
@@ -282,25 +287,15 @@ impl fmt::Debug for Gl {
 
 impl Drop for Inner {
     fn drop(&mut self) {
+        if self.lost.get() {
+            return;
+        }
         // SAFETY: the context is current while the handle lives, and the names are ours.
         unsafe {
             self.glow.delete_vertex_array(self.vertex_array);
             self.glow.delete_sampler(self.nearest);
             self.glow.delete_sampler(self.nearest_mipmap);
         }
-    }
-}
-
-/// The name of a glGetError code.
-pub(crate) fn error_name(code: u32) -> String {
-    match code {
-        glow::INVALID_ENUM => "GL_INVALID_ENUM".to_owned(),
-        glow::INVALID_VALUE => "GL_INVALID_VALUE".to_owned(),
-        glow::INVALID_OPERATION => "GL_INVALID_OPERATION".to_owned(),
-        glow::INVALID_FRAMEBUFFER_OPERATION => "GL_INVALID_FRAMEBUFFER_OPERATION".to_owned(),
-        glow::OUT_OF_MEMORY => "GL_OUT_OF_MEMORY".to_owned(),
-        glow::CONTEXT_LOST => "GL_CONTEXT_LOST".to_owned(),
-        _ => format!("{code:#06x}"),
     }
 }
 
@@ -334,11 +329,4 @@ unsafe fn sampler(glow: &glow::Context, minification: u32) -> Result<glow::Sampl
         }
         Ok(sampler)
     }
-}
-
-/// glow returned no name: the GL error tells why.
-fn gl_error(glow: &glow::Context, what: &str) -> Error {
-    // SAFETY: the context is current where an object was just asked for.
-    let code = unsafe { glow.get_error() };
-    Error::Gl { code: error_name(code), what: what.to_owned() }
 }

@@ -5,7 +5,7 @@ use glow::HasContext as _;
 
 use super::program::Uniform;
 use super::state::{DRAW_BUFFERS, UNITS};
-use super::{Gl, Program, Texture, gl_error};
+use super::{Gl, Program, TargetShape, Texture};
 use crate::error::{Error, Result};
 
 /// Textures to draw into, one draw buffer per texture or layer of one, with a framebuffer per level.
@@ -38,11 +38,11 @@ impl Target {
         assert!(buffers <= DRAW_BUFFERS, "StateGuard covers {DRAW_BUFFERS} draw buffers");
         let levels = first.levels();
         let mut target = Self { gl: gl.clone(), textures, depth, framebuffers: Vec::new() };
-        let glow = gl.glow();
+        let glow = gl.current()?;
         for level in 0..levels {
             // SAFETY: the context is current while the handle lives.
             unsafe {
-                let framebuffer = glow.create_framebuffer().map_err(|what| gl_error(glow, &what))?;
+                let framebuffer = glow.create_framebuffer().map_err(|what| gl.failure(&what))?;
                 target.framebuffers.push(framebuffer);
                 glow.bind_framebuffer(glow::FRAMEBUFFER, Some(framebuffer));
                 let attachments: Vec<u32> = (glow::COLOR_ATTACHMENT0..).take(buffers as usize).collect();
@@ -75,6 +75,16 @@ impl Target {
         Self::new(gl, vec![texture])
     }
 
+    /// A target of new textures.
+    ///
+    /// # Errors
+    /// Those of [`Texture::of`] and [`Target::new`].
+    pub(crate) fn of(gl: &Gl, shape: &TargetShape) -> Result<Self> {
+        let textures = shape.iter().map(|&texture| Texture::of(gl, texture)).collect::<Result<_>>()?;
+        let labels: Vec<_> = shape.iter().map(|texture| texture.label).collect();
+        Ok(Self::new(gl, textures)?.labelled(&labels))
+    }
+
     /// The texture of the first draw buffer.
     pub(crate) fn texture(&self) -> &Texture {
         &self.textures[0]
@@ -87,15 +97,18 @@ impl Target {
 
     /// Fills the levels above 0 of the first texture with glGenerateMipmap.
     pub(crate) fn generate_mipmaps(&mut self) {
-        self.textures[0].generate_mipmaps();
+        if !self.gl.is_lost() {
+            let Self { gl, textures, .. } = self;
+            gl.timed("mipmap levels", || textures[0].generate_mipmaps());
+        }
     }
 
     /// Sets level 0 of the textures, of unsigned integers and without layers, to a value each.
     pub(crate) fn clear(&mut self, values: &[u32]) {
         assert_eq!(values.len(), self.textures.len(), "a value for each texture");
+        let Some(glow) = self.gl.live() else { return };
         // SAFETY: the context is current while the handle lives, and the draw buffers are unsigned integer ones.
         unsafe {
-            let glow = self.gl.glow();
             glow.bind_framebuffer(glow::DRAW_FRAMEBUFFER, Some(self.framebuffers[0]));
             for (buffer, &value) in (0..).zip(values) {
                 glow.clear_buffer_u32_slice(glow::COLOR, buffer, &[value; 4]);
@@ -139,10 +152,38 @@ impl Target {
 
 impl Drop for Target {
     fn drop(&mut self) {
+        let Some(glow) = self.gl.live() else { return };
         for framebuffer in self.framebuffers.drain(..) {
             // SAFETY: the context is current while the handle lives, and the name is ours.
-            unsafe { self.gl.glow().delete_framebuffer(framebuffer) };
+            unsafe { glow.delete_framebuffer(framebuffer) };
         }
+    }
+}
+
+/// Targets that were made together, to be handed out in their order: all of them, or none where one failed.
+#[derive(Debug)]
+pub(crate) struct Targets(std::vec::IntoIter<Target>);
+
+impl Targets {
+    /// # Errors
+    /// Those of [`Target::of`].
+    pub(crate) fn new(gl: &Gl, shapes: &[TargetShape]) -> Result<Self> {
+        let targets: Vec<_> = shapes.iter().map(|shape| Target::of(gl, shape)).collect::<Result<_>>()?;
+        Ok(Self(targets.into_iter()))
+    }
+
+    /// The next one.
+    ///
+    /// # Panics
+    /// If there is none: what was made and what is taken differ, our own mistake.
+    pub(crate) fn take(&mut self) -> Target {
+        self.0.next().expect("a target for each shape")
+    }
+
+    /// # Panics
+    /// If one is left, as [`take`](Self::take).
+    pub(crate) fn finish(self) {
+        assert_eq!(self.0.len(), 0, "a place for each target");
     }
 }
 
@@ -253,7 +294,8 @@ impl<'a> Pass<'a> {
         assert!(first.cmplt(end).all(), "a pass draws something: from {first} to {end}");
         let (corner, size) = (first.as_ivec2(), (end - first).as_ivec2());
         let gl = self.program.gl();
-        gl.labelled(self.label, || {
+        gl.current()?;
+        gl.timed(self.label, || {
             self.program.use_program();
             for (unit, &(name, texture)) in (0..).zip(&self.reads) {
                 texture.bind(unit);

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use glow::HasContext as _;
 
-use super::{Gl, ShaderSource, gl_error};
+use super::{Gl, ShaderSource};
 use crate::error::{Error, Result};
 
 /// A value for a uniform.
@@ -75,7 +75,7 @@ impl Program {
     /// # Errors
     /// [`Error::Shader`] with the driver's log and the numbered source.
     pub(crate) fn new(gl: &Gl, source: &ShaderSource) -> Result<Self> {
-        let glow = gl.glow();
+        let glow = gl.current()?;
         let failure = |log: String| Error::Shader {
             label: source.label().to_owned(),
             log: log.trim().to_owned(),
@@ -83,13 +83,13 @@ impl Program {
         };
         // SAFETY: the context is current while the handle lives; each name is deleted on every way out.
         unsafe {
-            let name = glow.create_program().map_err(|what| gl_error(glow, &what))?;
+            let name = glow.create_program().map_err(|what| gl.failure(&what))?;
             let mut owned =
                 Self { gl: gl.clone(), label: source.label().to_owned(), name, uniforms: BTreeMap::new() };
             for (stage, text) in
                 [(glow::VERTEX_SHADER, source.vertex()), (glow::FRAGMENT_SHADER, source.fragment())]
             {
-                let shader = glow.create_shader(stage).map_err(|what| gl_error(glow, &what))?;
+                let shader = glow.create_shader(stage).map_err(|what| gl.failure(&what))?;
                 glow.shader_source(shader, &text);
                 glow.compile_shader(shader);
                 let compiled = glow.get_shader_compile_status(shader);
@@ -181,7 +181,8 @@ impl Program {
 
 impl Drop for Program {
     fn drop(&mut self) {
+        let Some(glow) = self.gl.live() else { return };
         // SAFETY: the context is current while the handle lives, and the name is ours.
-        unsafe { self.gl.glow().delete_program(self.name) };
+        unsafe { glow.delete_program(self.name) };
     }
 }

@@ -2,7 +2,7 @@
 
 use glow::HasContext as _;
 
-use super::{Gl, error_name, gl_error};
+use super::Gl;
 use crate::error::{Error, Result};
 
 /// A query of one kind, to be used again and again.
@@ -19,7 +19,7 @@ impl Query {
     /// Fragments that are drawn: those of GL_SAMPLES_PASSED, in framebuffers of one sample a pixel.
     ///
     /// # Errors
-    /// [`Error::Gl`] when memory runs out.
+    /// [`Error::OutOfMemory`].
     pub(crate) fn of_fragments(gl: &Gl) -> Result<Self> {
         Self::new(gl, glow::SAMPLES_PASSED)
     }
@@ -27,14 +27,22 @@ impl Query {
     /// Nanoseconds: those of GL_TIME_ELAPSED.
     ///
     /// # Errors
-    /// [`Error::Gl`] when memory runs out.
+    /// [`Error::OutOfMemory`].
     pub(super) fn of_time(gl: &Gl) -> Result<Self> {
         Self::new(gl, glow::TIME_ELAPSED)
     }
 
+    /// Nanoseconds since some moment: those of GL_TIMESTAMP.
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`](crate::Error::OutOfMemory).
+    pub(super) fn of_moments(gl: &Gl) -> Result<Self> {
+        Self::new(gl, glow::TIMESTAMP)
+    }
+
     fn new(gl: &Gl, target: u32) -> Result<Self> {
         // SAFETY: the context is current while the handle lives.
-        let name = unsafe { gl.glow().create_query() }.map_err(|what| gl_error(gl.glow(), &what))?;
+        let name = unsafe { gl.current()?.create_query() }.map_err(|what| gl.failure(&what))?;
         Ok(Self { gl: gl.clone(), name, target })
     }
 
@@ -56,18 +64,17 @@ impl Query {
     /// [`Error::QueryRunning`] while another query of the kind is running, which goes on; [`Error::Gl`].
     pub(super) fn begin(&self) -> Result<()> {
         self.gl.check("what comes before a query")?;
+        let glow = self.gl.current()?;
         // SAFETY: the context is current while the handle lives.
         let code = unsafe {
-            self.gl.glow().begin_query(self.target, self.name);
-            self.gl.glow().get_error()
+            glow.begin_query(self.target, self.name);
+            glow.get_error()
         };
         match code {
             glow::NO_ERROR => Ok(()),
             // The name is of this kind and not running, so that only another one can be in the way.
             glow::INVALID_OPERATION => Err(Error::QueryRunning { kind: self.kind() }),
-            _ => {
-                Err(Error::Gl { code: error_name(code), what: format!("beginning a {} query", self.kind()) })
-            }
+            _ => Err(self.gl.error(code, &format!("beginning a {} query", self.kind()), None)),
         }
     }
 
@@ -78,13 +85,30 @@ impl Query {
 
     /// Ends what [`begin`](Self::begin) began.
     pub(super) fn end(&self) {
+        let Some(glow) = self.gl.live() else { return };
         // SAFETY: the context is current while the handle lives.
-        unsafe { self.gl.glow().end_query(self.target) };
+        unsafe { glow.end_query(self.target) };
     }
 
-    /// Waits for the result.
+    /// Takes the time at which the GPU has done all commands before this one. No query of another kind is disturbed.
+    pub(super) fn stamp(&self) {
+        let Some(glow) = self.gl.live() else { return };
+        // SAFETY: the context is current while the handle lives, and the query is one of timestamps.
+        unsafe { glow.query_counter(self.name, self.target) };
+    }
+
+    /// Whether the result has come; never waits.
+    pub(super) fn has_result(&self) -> bool {
+        self.get(glow::QUERY_RESULT_AVAILABLE) != 0
+    }
+
+    /// Waits for the result; 0 if the context is lost, which [`Gl::check`] tells.
     pub(super) fn result(&self) -> u64 {
-        let glow = self.gl.glow();
+        self.get(glow::QUERY_RESULT)
+    }
+
+    fn get(&self, parameter: u32) -> u64 {
+        let Some(glow) = self.gl.live() else { return 0 };
         let mut result = 0_u64;
         let address = (&raw mut result).expose_provenance();
         // SAFETY: no query buffer is bound, so the "offset" is the address of the result. (glow's plain reader of u64
@@ -96,7 +120,7 @@ impl Query {
                 glow.bind_buffer(glow::QUERY_BUFFER, None);
                 bound
             });
-            glow.get_query_parameter_u64_with_offset(self.name, glow::QUERY_RESULT, address);
+            glow.get_query_parameter_u64_with_offset(self.name, parameter, address);
             if let Some(bound) = query_buffer {
                 glow.bind_buffer(glow::QUERY_BUFFER, bound);
             }
@@ -107,7 +131,8 @@ impl Query {
 
 impl Drop for Query {
     fn drop(&mut self) {
+        let Some(glow) = self.gl.live() else { return };
         // SAFETY: the context is current while the handle lives, and the name is ours.
-        unsafe { self.gl.glow().delete_query(self.name) };
+        unsafe { glow.delete_query(self.name) };
     }
 }

@@ -3,7 +3,7 @@
 use bytemuck::Pod;
 use glow::HasContext as _;
 
-use super::{Gl, Target, gl_error};
+use super::{Gl, Target};
 use crate::error::Result;
 use crate::image::Image;
 
@@ -12,25 +12,32 @@ use crate::image::Image;
 pub(crate) struct Readback {
     gl: Gl,
     buffer: glow::Buffer,
+    bytes: u64,
     pending: Option<(glow::Fence, glam::UVec2)>,
 }
 
 impl Readback {
-    /// Makes the buffer, named `label` and still without memory.
+    /// Allocates room for `bytes` of texels, in a buffer named `label`.
     ///
     /// # Errors
-    /// [`Error::Gl`](crate::Error::Gl) when names run out.
-    pub(crate) fn new(gl: &Gl, label: &str) -> Result<Self> {
-        let glow = gl.glow();
-        // SAFETY: the context is current while the handle lives. A name is a buffer, and can be labelled, once bound.
-        let buffer = unsafe {
-            let buffer = glow.create_buffer().map_err(|what| gl_error(glow, &what))?;
+    /// [`Error::OutOfMemory`](crate::Error::OutOfMemory).
+    pub(crate) fn new(gl: &Gl, label: &str, bytes: u64) -> Result<Self> {
+        let glow = gl.current()?;
+        // SAFETY: the context is current while the handle lives.
+        let buffer = unsafe { glow.create_buffer() }.map_err(|what| gl.failure(&what))?;
+        gl.inner.buffer_bytes.set(gl.buffer_bytes() + bytes);
+        let owned = Self { gl: gl.clone(), buffer, bytes, pending: None };
+        // SAFETY: as above; StateGuard puts the binding back.
+        unsafe {
             glow.bind_buffer(glow::PIXEL_PACK_BUFFER, Some(buffer));
+            let bytes = i32::try_from(bytes).unwrap_or(i32::MAX);
+            glow.buffer_data_size(glow::PIXEL_PACK_BUFFER, bytes, glow::STREAM_READ);
             glow.bind_buffer(glow::PIXEL_PACK_BUFFER, None);
-            buffer
-        };
+        }
+        // A name is a buffer, and can be labelled, once it was bound.
         gl.label(glow::BUFFER, buffer.0.get(), label);
-        Ok(Self { gl: gl.clone(), buffer, pending: None })
+        gl.check_allocation("allocating a pixel buffer", Some(bytes))?;
+        Ok(owned)
     }
 
     /// Whether a copy is on its way.
@@ -41,22 +48,21 @@ impl Readback {
     /// Asks for the first texture of `target`; what was pending is dropped.
     ///
     /// # Errors
-    /// [`Error::Gl`](crate::Error::Gl) when memory runs out.
+    /// [`Error::Gl`](crate::Error::Gl) if the driver makes no fence.
+    ///
+    /// # Panics
+    /// If there is no room for the texels: our own mistake.
     pub(crate) fn begin(&mut self, target: &Target) -> Result<()> {
         self.forget();
         let (size, format) = (target.size(), target.texture().format());
         let (components, kind) = format.transfer();
         let bytes = size.x as usize * size.y as usize * format.texel_bytes();
-        let glow = self.gl.glow();
+        assert!(bytes as u64 <= self.bytes, "room for the texels");
+        let glow = self.gl.current()?;
         // SAFETY: the context is current while the handle lives; the buffer has room for the texels, tightly packed as
         // StateGuard sets it.
         unsafe {
             glow.bind_buffer(glow::PIXEL_PACK_BUFFER, Some(self.buffer));
-            glow.buffer_data_size(
-                glow::PIXEL_PACK_BUFFER,
-                i32::try_from(bytes).unwrap_or(i32::MAX),
-                glow::STREAM_READ,
-            );
             target.bind_for_reading();
             glow.read_pixels(
                 0,
@@ -68,8 +74,9 @@ impl Readback {
                 glow::PixelPackData::BufferOffset(0),
             );
             glow.bind_buffer(glow::PIXEL_PACK_BUFFER, None);
-            let fence =
-                glow.fence_sync(glow::SYNC_GPU_COMMANDS_COMPLETE, 0).map_err(|what| gl_error(glow, &what))?;
+            let fence = glow
+                .fence_sync(glow::SYNC_GPU_COMMANDS_COMPLETE, 0)
+                .map_err(|what| self.gl.failure(&what))?;
             self.pending = Some((fence, size));
         }
         Ok(())
@@ -78,7 +85,7 @@ impl Readback {
     /// The texels, if they have come; never waits.
     pub(crate) fn poll<T: Pod>(&mut self) -> Option<Image<T>> {
         let (fence, size) = self.pending?;
-        let glow = self.gl.glow();
+        let glow = self.gl.live()?;
         // SAFETY: the context is current while the handle lives, and the fence is ours.
         let status = unsafe { glow.client_wait_sync(fence, glow::SYNC_FLUSH_COMMANDS_BIT, 0) };
         if ![glow::ALREADY_SIGNALED, glow::CONDITION_SATISFIED].contains(&status) {
@@ -96,9 +103,9 @@ impl Readback {
     }
 
     fn forget(&mut self) {
-        if let Some((fence, _)) = self.pending.take() {
+        if let (Some((fence, _)), Some(glow)) = (self.pending.take(), self.gl.live()) {
             // SAFETY: the context is current while the handle lives, and the fence is ours.
-            unsafe { self.gl.glow().delete_sync(fence) };
+            unsafe { glow.delete_sync(fence) };
         }
     }
 }
@@ -106,7 +113,9 @@ impl Readback {
 impl Drop for Readback {
     fn drop(&mut self) {
         self.forget();
+        self.gl.inner.buffer_bytes.set(self.gl.buffer_bytes() - self.bytes);
+        let Some(glow) = self.gl.live() else { return };
         // SAFETY: the context is current while the handle lives, and the name is ours.
-        unsafe { self.gl.glow().delete_buffer(self.buffer) };
+        unsafe { glow.delete_buffer(self.buffer) };
     }
 }

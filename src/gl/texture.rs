@@ -4,7 +4,7 @@ use bytemuck::Pod;
 use glam::UVec2;
 use glow::HasContext as _;
 
-use super::{Gl, gl_error};
+use super::{Gl, TextureShape};
 use crate::error::{Error, Result};
 use crate::image::Image;
 
@@ -129,51 +129,37 @@ const SWIZZLES: [(u32, u32, &str); 4] = [
 pub(crate) struct Texture {
     gl: Gl,
     name: glow::Texture,
-    format: TextureFormat,
-    size: UVec2,
-    levels: u32,
-    /// Layers of an array.
-    layers: Option<u32>,
+    shape: TextureShape,
     ours: bool,
 }
 
 impl Texture {
-    /// Allocates `levels` levels, contents undefined; each level has half the side of the one before, rounded
-    /// down, at least 1.
+    /// Allocates `levels` levels, contents undefined.
     ///
     /// # Errors
-    /// [`Error::TooLarge`]; [`Error::Gl`] when memory runs out.
+    /// As [`Texture::of`].
     pub(crate) fn new(gl: &Gl, format: TextureFormat, size: UVec2, levels: u32) -> Result<Self> {
-        Self::allocate(gl, format, size, levels, None)
+        Self::of(gl, TextureShape::with_levels("", format, size, levels))
     }
 
-    /// Allocates an array of `layers` layers with one level, contents undefined.
+    /// Allocates all levels and layers, contents undefined.
     ///
     /// # Errors
-    /// [`Error::TooLarge`]; [`Error::Gl`] when memory runs out.
-    pub(crate) fn layered(gl: &Gl, format: TextureFormat, size: UVec2, layers: u32) -> Result<Self> {
-        Self::allocate(gl, format, size, 1, Some(layers))
-    }
-
-    fn allocate(
-        gl: &Gl,
-        format: TextureFormat,
-        size: UVec2,
-        levels: u32,
-        layers: Option<u32>,
-    ) -> Result<Self> {
+    /// [`Error::TooLarge`]; [`Error::OutOfMemory`]; [`Error::ContextLost`]; [`Error::Gl`] if the driver fails.
+    pub(crate) fn of(gl: &Gl, shape: TextureShape) -> Result<Self> {
+        let TextureShape { format, size, levels, .. } = shape;
         let limit = gl.info().max_texture_size;
         if size.max_element() > limit {
             return Err(Error::TooLarge { size, limit });
         }
-        let glow = gl.glow();
+        let glow = gl.current()?;
         // SAFETY: the context is current while the handle lives, and no unpack buffer is bound (StateGuard), so
         // `None` allocates.
         let texture = unsafe {
-            let name = glow.create_texture().map_err(|what| gl_error(glow, &what))?;
-            let texture = Self { gl: gl.clone(), name, format, size, levels, layers, ours: true };
+            let name = glow.create_texture().map_err(|what| gl.failure(&what))?;
+            let texture = Self { gl: gl.clone(), name, shape, ours: true };
             let total = &gl.inner.texture_bytes;
-            total.set(total.get() + texture.bytes());
+            total.set(total.get() + shape.bytes());
             texture.bind(0);
             for level in 0..levels {
                 texture.allocate_level(level);
@@ -189,7 +175,8 @@ impl Texture {
             glow.tex_parameter_i32(target, glow::TEXTURE_MAG_FILTER, glow::NEAREST.cast_signed());
         }
         texture.select_levels(0, levels - 1);
-        gl.check(&format!("allocating a {} texture of {} x {}", format.name(), size.x, size.y))?;
+        let what = format!("allocating a {} texture of {} x {}", format.name(), size.x, size.y);
+        gl.check_allocation(&what, Some(shape.bytes()))?;
         Ok(texture)
     }
 
@@ -197,12 +184,12 @@ impl Texture {
     unsafe fn allocate_level(&self, level: u32) {
         let glow = self.gl.glow();
         let (width, height) = self.level_size(level).as_ivec2().into();
-        let (level, internal) = (level.cast_signed(), self.format.internal().cast_signed());
-        let (components, kind) = self.format.transfer();
+        let (level, internal) = (level.cast_signed(), self.shape.format.internal().cast_signed());
+        let (components, kind) = self.shape.format.transfer();
         let nothing = glow::PixelUnpackData::Slice(None);
         // SAFETY: the caller has bound the texture, and no unpack buffer.
         unsafe {
-            match self.layers {
+            match self.shape.layers {
                 None => glow.tex_image_2d(
                     self.target(),
                     level,
@@ -250,13 +237,16 @@ impl Texture {
         formats: &[TextureFormat],
     ) -> Result<Self> {
         let mismatch = |expected: String, got: String| Error::Mismatch { what, expected, got };
-        let glow = gl.glow();
+        let glow = gl.current()?;
         // SAFETY: the context is current while the handle lives; a name of another target is an error that is
         // asked for at once.
         let (internal, size, base) = unsafe {
             glow.active_texture(glow::TEXTURE0);
             glow.bind_texture(glow::TEXTURE_2D, Some(name));
             let code = glow.get_error();
+            if code == glow::CONTEXT_LOST {
+                return Err(gl.error(code, "binding a texture of the host", None));
+            }
             if code != glow::NO_ERROR {
                 let got = format!("a name that answers {} when bound there", super::error_name(code));
                 return Err(mismatch("a GL_TEXTURE_2D".to_owned(), got));
@@ -287,7 +277,7 @@ impl Texture {
                 return Err(mismatch((*words).to_owned(), format!("{got:#06x}")));
             }
         }
-        Ok(Self { gl: gl.clone(), name, format, size, levels: 1, layers: None, ours: false })
+        Ok(Self { gl: gl.clone(), name, shape: TextureShape::new("", format, size), ours: false })
     }
 
     /// Wraps a texture with depth, of any depth format, that stays the host's.
@@ -295,7 +285,7 @@ impl Texture {
     /// # Errors
     /// [`Error::Mismatch`] if it is none.
     pub(crate) fn borrow_depth(gl: &Gl, name: glow::Texture) -> Result<Self> {
-        let glow = gl.glow();
+        let glow = gl.current()?;
         let mismatch = |got: String| Error::Mismatch {
             what: "host's depth texture",
             expected: "a GL_TEXTURE_2D with depth".to_owned(),
@@ -321,8 +311,8 @@ impl Texture {
             return Err(mismatch("one without depth, or without an image at level 0".to_owned()));
         }
         // Whatever its bits, shaders read a float.
-        let (format, size) = (TextureFormat::Depth32Float, UVec2::new(width, height));
-        Ok(Self { gl: gl.clone(), name, format, size, levels: 1, layers: None, ours: false })
+        let shape = TextureShape::new("", TextureFormat::Depth32Float, UVec2::new(width, height));
+        Ok(Self { gl: gl.clone(), name, shape, ours: false })
     }
 
     /// The same texture for another reader; `self` stays its owner.
@@ -335,15 +325,16 @@ impl Texture {
     /// # Panics
     /// If the image's size or type does not fit: our own mistake.
     pub(crate) fn upload<T: Pod>(&self, image: &Image<T>) {
-        assert_eq!(image.size(), self.size, "image and texture");
-        assert_eq!(size_of::<T>(), self.format.texel_bytes(), "value and texel");
+        assert_eq!(image.size(), self.size(), "image and texture");
+        assert_eq!(size_of::<T>(), self.shape.format.texel_bytes(), "value and texel");
+        let Some(glow) = self.gl.live() else { return };
         self.bind(0);
-        let (components, kind) = self.format.transfer();
-        let size = self.size.as_ivec2();
+        let (components, kind) = self.shape.format.transfer();
+        let size = self.size().as_ivec2();
         let bytes = bytemuck::cast_slice(image.values());
         // SAFETY: the slice holds size.x * size.y texels of this format, tightly packed as StateGuard sets it.
         unsafe {
-            self.gl.glow().tex_sub_image_2d(
+            glow.tex_sub_image_2d(
                 glow::TEXTURE_2D,
                 0,
                 0,
@@ -357,19 +348,20 @@ impl Texture {
         }
     }
 
-    /// Reads a level back; waits for the GPU.
+    /// Reads a level back; waits for the GPU. Zeros if the context is lost, which [`Gl::check`] tells.
     ///
     /// # Panics
     /// If the type does not fit the format: our own mistake.
     pub(crate) fn read<T: Pod>(&self, level: u32) -> Image<T> {
-        assert_eq!(size_of::<T>(), self.format.texel_bytes(), "value and texel");
-        self.bind(0);
+        assert_eq!(size_of::<T>(), self.shape.format.texel_bytes(), "value and texel");
         let size = self.level_size(level);
         let mut values = vec![T::zeroed(); size.x as usize * size.y as usize];
-        let (components, kind) = self.format.transfer();
+        let Some(glow) = self.gl.live() else { return Image::from_values(size, values) };
+        self.bind(0);
+        let (components, kind) = self.shape.format.transfer();
         // SAFETY: the buffer holds the level's texels, tightly packed as StateGuard sets it.
         unsafe {
-            self.gl.glow().get_tex_image(
+            glow.get_tex_image(
                 glow::TEXTURE_2D,
                 level.cast_signed(),
                 components,
@@ -382,9 +374,10 @@ impl Texture {
 
     /// Fills the levels above 0 with glGenerateMipmap, whatever filter the driver uses.
     pub(crate) fn generate_mipmaps(&mut self) {
+        let Some(glow) = self.gl.live() else { return };
         self.bind(0);
         // SAFETY: the context is current, and the texture has a filterable format and all its levels.
-        unsafe { self.gl.glow().generate_mipmap(glow::TEXTURE_2D) };
+        unsafe { glow.generate_mipmap(glow::TEXTURE_2D) };
     }
 
     /// Restricts reading to the levels from `base` to `last`; `base` is then lod 0 of texelFetch.
@@ -392,10 +385,10 @@ impl Texture {
     /// Also how a level may be drawn to while the one before it is read, without a feedback loop
     /// (OpenGL 3.3 core, 4.4.3).
     pub(super) fn select_levels(&self, base: u32, last: u32) {
+        let Some(glow) = self.gl.live() else { return };
         self.bind(0);
         // SAFETY: the context is current, and both levels exist.
         unsafe {
-            let glow = self.gl.glow();
             glow.tex_parameter_i32(self.target(), glow::TEXTURE_BASE_LEVEL, base.cast_signed());
             glow.tex_parameter_i32(self.target(), glow::TEXTURE_MAX_LEVEL, last.cast_signed());
         }
@@ -403,10 +396,11 @@ impl Texture {
 
     /// Binds the texture to a unit.
     pub(super) fn bind(&self, unit: u32) {
+        let Some(glow) = self.gl.live() else { return };
         // SAFETY: the context is current while the handle lives.
         unsafe {
-            self.gl.glow().active_texture(glow::TEXTURE0 + unit);
-            self.gl.glow().bind_texture(self.target(), Some(self.name));
+            glow.active_texture(glow::TEXTURE0 + unit);
+            glow.bind_texture(self.target(), Some(self.name));
         }
     }
 
@@ -416,7 +410,8 @@ impl Texture {
     /// A framebuffer of ours is bound.
     pub(super) unsafe fn attach(&self, attachments: &mut impl Iterator<Item = u32>, level: u32) {
         let (glow, name, level) = (self.gl.glow(), Some(self.name), level.cast_signed());
-        let layers = self.layers.map_or(vec![None], |layers| (0..layers.cast_signed()).map(Some).collect());
+        let layers =
+            self.shape.layers.map_or(vec![None], |layers| (0..layers.cast_signed()).map(Some).collect());
         for (layer, attachment) in layers.into_iter().zip(attachments) {
             // SAFETY: as the caller vouches; level and layer exist.
             unsafe {
@@ -438,17 +433,17 @@ impl Texture {
 
     /// GL_TEXTURE_2D or GL_TEXTURE_2D_ARRAY.
     pub(super) fn target(&self) -> u32 {
-        if self.layers.is_some() { glow::TEXTURE_2D_ARRAY } else { glow::TEXTURE_2D }
+        if self.shape.layers.is_some() { glow::TEXTURE_2D_ARRAY } else { glow::TEXTURE_2D }
     }
 
     /// Layers of an array.
     pub(super) fn layers(&self) -> Option<u32> {
-        self.layers
+        self.shape.layers
     }
 
     /// The type of the sampler that reads it.
     pub(super) fn sampler_kind(&self) -> u32 {
-        match (self.format.is_float(), self.layers) {
+        match (self.shape.format.is_float(), self.shape.layers) {
             (true, None) => glow::SAMPLER_2D,
             (true, Some(_)) => glow::SAMPLER_2D_ARRAY,
             (false, None) => glow::UNSIGNED_INT_SAMPLER_2D,
@@ -457,30 +452,20 @@ impl Texture {
     }
 
     pub(crate) fn format(&self) -> TextureFormat {
-        self.format
+        self.shape.format
     }
 
     /// The size of level 0.
     pub(crate) fn size(&self) -> UVec2 {
-        self.size
+        self.shape.size
     }
 
     pub(crate) fn levels(&self) -> u32 {
-        self.levels
+        self.shape.levels
     }
 
     pub(crate) fn level_size(&self, level: u32) -> UVec2 {
-        (self.size >> level).max(UVec2::ONE)
-    }
-
-    /// What its levels and layers hold.
-    fn bytes(&self) -> u64 {
-        let texels = |level| {
-            let size = self.level_size(level);
-            u64::from(size.x) * u64::from(size.y)
-        };
-        let layers = u64::from(self.layers.unwrap_or(1));
-        (0..self.levels).map(texels).sum::<u64>() * layers * self.format.texel_bytes() as u64
+        self.shape.level_size(level)
     }
 
     pub(crate) fn name(&self) -> glow::Texture {
@@ -500,10 +485,12 @@ impl Texture {
 impl Drop for Texture {
     fn drop(&mut self) {
         if self.ours {
-            // SAFETY: the context is current while the handle lives, and the name is ours.
-            unsafe { self.gl.glow().delete_texture(self.name) };
+            if let Some(glow) = self.gl.live() {
+                // SAFETY: the context is current while the handle lives, and the name is ours.
+                unsafe { glow.delete_texture(self.name) };
+            }
             let total = &self.gl.inner.texture_bytes;
-            total.set(total.get() - self.bytes());
+            total.set(total.get() - self.shape.bytes());
         }
     }
 }

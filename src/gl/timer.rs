@@ -58,7 +58,7 @@ impl Timer {
     /// Makes the query.
     ///
     /// # Errors
-    /// [`Error::Gl`](crate::Error::Gl) when memory runs out.
+    /// [`Error::OutOfMemory`](crate::Error::OutOfMemory).
     pub fn new(gl: &Gl) -> Result<Self> {
         let _state = StateGuard::new(gl);
         let llvmpipe_frame = if gl.info().is_llvmpipe() {
@@ -80,8 +80,10 @@ impl Timer {
         let start = Instant::now();
         let result = work();
         self.query.end();
-        // SAFETY: the context is current while the handle lives.
-        unsafe { self.gl.glow().finish() };
+        if let Some(glow) = self.gl.live() {
+            // SAFETY: the context is current while the handle lives.
+            unsafe { glow.finish() };
+        }
         let wall = start.elapsed();
         let nanoseconds = self.query.result();
         let result = result?;
@@ -91,8 +93,8 @@ impl Timer {
 
     /// Begins the query, with nothing before it left to do.
     fn begin(&mut self) -> Result<()> {
-        let glow = self.gl.glow();
         let _state = StateGuard::new(&self.gl);
+        let glow = self.gl.current()?;
         if let Some(frame) = &mut self.llvmpipe_frame {
             frame.clear(&[0]);
         }

@@ -42,7 +42,7 @@ impl PhotonPoints {
     /// Adds photons; best many at once.
     ///
     /// # Errors
-    /// [`Error::Mismatch`] if the buffer is the host's; [`Error::Gl`] when memory runs out.
+    /// [`Error::Mismatch`] if the buffer is the host's; [`Error::OutOfMemory`].
     pub fn upload(&mut self, photons: &[PhotonPoint]) -> Result<()> {
         self.check_ours()?;
         let _state = StateGuard::new(&self.gl);

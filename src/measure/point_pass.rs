@@ -24,7 +24,7 @@ impl PointPass {
     ///
     /// # Errors
     /// [`Error::TooLarge`](crate::Error::TooLarge), [`Error::Shader`](crate::Error::Shader), or
-    /// [`Error::Gl`](crate::Error::Gl) when memory runs out.
+    /// [`Error::OutOfMemory`](crate::Error::OutOfMemory).
     pub fn new(gl: &Gl, view: &View) -> Result<Self> {
         let _state = StateGuard::new(gl);
         let program = Program::new(gl, &Self::source())?;

@@ -71,7 +71,7 @@ impl UnitPass {
     /// Compiles and allocates.
     ///
     /// # Errors
-    /// [`Error::TooLarge`], [`Error::Shader`], or [`Error::Gl`] when memory runs out.
+    /// [`Error::TooLarge`], [`Error::Shader`], or [`Error::OutOfMemory`].
     pub fn new(gl: &Gl, unit: Unit, size: UVec2) -> Result<Self> {
         let _state = StateGuard::new(gl);
         let program = Program::new(gl, &unit.source())?;

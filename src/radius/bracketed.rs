@@ -39,7 +39,9 @@ use super::{of_pixels, search_source, unreached};
 use crate::error::Result;
 use crate::exactness;
 use crate::frame::{Changed, Frame, Rectangle};
-use crate::gl::{Gl, Pass, Program, ShaderSource, Target, Texture, TextureFormat, glsl};
+use crate::gl::{
+    Gl, Pass, Program, ShaderSource, Target, TargetShape, Targets, Texture, TextureFormat, TextureShape, glsl,
+};
 use crate::maps::RadiusMap;
 use crate::settings::{Edges, Order, Search, Settings};
 use crate::structure::{self, Structure};
@@ -112,37 +114,39 @@ struct Blocks {
 
 impl Bracketed {
     pub(super) fn new(gl: &Gl, size: UVec2, density: TextureFormat, settings: &Settings) -> Result<Self> {
-        let texture = |format, side: u32| Texture::new(gl, format, (size + side - 1) / side, 1);
+        let mut targets = Targets::new(gl, &shapes(size, settings))?;
         let programs = |sources: Vec<ShaderSource>| {
             sources.iter().map(|source| Program::new(gl, source)).collect::<Result<Vec<_>>>()
         };
         let blocks = BLOCK_SIDES.map(|(wider_side, side)| {
             Ok(Blocks {
-                target: Target::single(gl, texture(TextureFormat::R32Uint, side)?)?
-                    .labelled(&["brackets of blocks"]),
+                target: targets.take(),
                 programs: programs(block_sources(density, settings, wider_side, side))?,
             })
         });
-        let tiles = || -> Result<Target> {
-            let (brackets, classes) = (TextureFormat::R32Uint, TextureFormat::R8Uint);
-            let target = Target::new(gl, vec![texture(brackets, TILE_SIDE)?, texture(classes, TILE_SIDE)?])?;
-            Ok(target.labelled(&["brackets of tiles", "classes of tiles"]))
-        };
         let [nothing, changed, added] =
             Before::ALL.map(|before| Program::new(gl, &tile_source(density, settings, before)));
         let pixels = pixel_sources(density, settings);
         let classes: Vec<_> = pixels.iter().map(|&(class, _)| class).collect();
         let pixels = programs(pixels.into_iter().map(|(_, source)| source).collect())?;
         Ok(Self {
-            tiles: tiles()?,
-            tiles_before: tiles()?,
+            tiles: targets.take(),
+            tiles_before: targets.take(),
             tile: [nothing?, changed?, added?],
-            mask_tiles: if settings.masked { Some(MaskTiles::new(gl, size)?) } else { None },
+            mask_tiles: if settings.masked { Some(MaskTiles::new(gl, &mut targets)?) } else { None },
             blocks: blocks.into_iter().collect::<Result<_>>()?,
             pixels: classes.into_iter().zip(pixels).collect(),
             last_radius: settings.search.max_radius + u32::from(settings.limited_mask),
             settings: *settings,
         })
+    }
+
+    pub(super) fn resize(&mut self, targets: &mut Targets) {
+        for blocks in &mut self.blocks {
+            blocks.target = targets.take();
+        }
+        (self.tiles, self.tiles_before) = (targets.take(), targets.take());
+        self.mask_tiles.iter_mut().for_each(|mask_tiles| mask_tiles.resize(targets));
     }
 
     pub(super) fn estimate(
@@ -204,6 +208,22 @@ impl Bracketed {
         }
         Ok(())
     }
+}
+
+/// Brackets of blocks, then of tiles with their classes, of this frame and of the one before; reduced masks.
+pub(super) fn shapes(size: UVec2, settings: &Settings) -> Vec<TargetShape> {
+    let texture = |label, format, side: u32| TextureShape::new(label, format, (size + side - 1) / side);
+    let blocks = |side| vec![texture("brackets of blocks", TextureFormat::R32Uint, side)];
+    let mut shapes = BLOCK_SIDES.map(|(_, side)| blocks(side)).to_vec();
+    let tiles = vec![
+        texture("brackets of tiles", TextureFormat::R32Uint, TILE_SIDE),
+        texture("classes of tiles", TextureFormat::R8Uint, TILE_SIDE),
+    ];
+    shapes.extend([tiles.clone(), tiles]);
+    if settings.masked {
+        shapes.extend(mask_tiles::shapes(size));
+    }
+    shapes
 }
 
 /// What is known of the tiles before their search.

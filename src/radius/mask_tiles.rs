@@ -3,7 +3,9 @@
 use glam::UVec2;
 
 use crate::error::Result;
-use crate::gl::{Gl, Pass, Program, ShaderSource, Target, Texture, TextureFormat, glsl};
+use crate::gl::{
+    Gl, Pass, Program, ShaderSource, Target, TargetShape, Targets, Texture, TextureFormat, TextureShape, glsl,
+};
 use crate::mask::Mask;
 
 const MASK: &str = "radius mask";
@@ -20,17 +22,12 @@ pub(super) struct MaskTiles {
 }
 
 impl MaskTiles {
-    pub(super) fn new(gl: &Gl, size: UVec2) -> Result<Self> {
-        let target = |size| -> Result<Target> {
-            let tiles = Texture::new(gl, TextureFormat::R8Uint, size, 1)?;
-            Ok(Target::single(gl, tiles)?.labelled(&["tiles of a mask"]))
-        };
-        let blocks = (size + SIDE - 1) / SIDE;
-        Ok(Self {
-            program: Program::new(gl, &source())?,
-            blocks: target(blocks)?,
-            tiles: target((blocks + SIDE - 1) / SIDE)?,
-        })
+    pub(super) fn new(gl: &Gl, targets: &mut Targets) -> Result<Self> {
+        Ok(Self { program: Program::new(gl, &source())?, blocks: targets.take(), tiles: targets.take() })
+    }
+
+    pub(super) fn resize(&mut self, targets: &mut Targets) {
+        (self.blocks, self.tiles) = (targets.take(), targets.take());
     }
 
     /// 1 for each tile of 64 x 64 that has a pixel of the mask, else 0.
@@ -39,6 +36,12 @@ impl MaskTiles {
         reduce(&self.program, self.blocks.texture(), &mut self.tiles)?;
         Ok(self.tiles.texture())
     }
+}
+
+pub(super) fn shapes(size: UVec2) -> Vec<TargetShape> {
+    let reduced = |size: UVec2| (size + SIDE - 1) / SIDE;
+    let shape = |size| vec![TextureShape::new("tiles of a mask", TextureFormat::R8Uint, size)];
+    vec![shape(reduced(size)), shape(reduced(reduced(size)))]
 }
 
 fn reduce(program: &Program, mask: &Texture, target: &mut Target) -> Result<()> {

@@ -17,7 +17,7 @@ use glam::UVec2;
 use crate::error::Result;
 use crate::exactness;
 use crate::frame::Frame;
-use crate::gl::{Gl, Pass, Program, ShaderSource, TextureFormat, glsl};
+use crate::gl::{Gl, Pass, Program, ShaderSource, Target, TargetShape, Targets, TextureFormat, glsl};
 use crate::maps::RadiusMap;
 use crate::settings::{Edges, Method, Order, Settings};
 use crate::structure::{self, Structure};
@@ -58,10 +58,39 @@ impl RadiusSearch {
         };
         Ok(Self {
             order,
-            radii: RadiusMap::new(gl, size, settings.limited_mask)?,
+            radii: RadiusMap::of(Target::of(gl, &RadiusMap::shape(size, settings.limited_mask))?),
             unreached: Program::new(gl, &unreached::source(settings))?,
             settings: *settings,
         })
+    }
+
+    /// What a search of that many passes allocates for maps of `size`, in the order in which [`resize`](Self::resize)
+    /// takes it.
+    pub(crate) fn shapes(size: UVec2, settings: &Settings, passes: usize) -> Vec<TargetShape> {
+        let mut shapes = match settings.search.order {
+            Order::Forward | Order::Binary => stepwise::shapes(size, settings, passes),
+            Order::Bracketed => bracketed::shapes(size, settings),
+        };
+        shapes.push(RadiusMap::shape(size, settings.limited_mask));
+        shapes
+    }
+
+    /// What it would allocate for another size.
+    pub(crate) fn shapes_at(&self, size: UVec2) -> Vec<TargetShape> {
+        let passes = match &self.order {
+            Ordered::Stepwise(stepwise) => stepwise.passes(),
+            Ordered::Bracketed(_) => 1,
+        };
+        Self::shapes(size, &self.settings, passes)
+    }
+
+    /// Takes targets for maps of another size; it holds no radii then.
+    pub(crate) fn resize(&mut self, targets: &mut Targets) {
+        match &mut self.order {
+            Ordered::Stepwise(stepwise) => stepwise.resize(targets),
+            Ordered::Bracketed(bracketed) => bracketed.resize(targets),
+        }
+        self.radii = RadiusMap::of(targets.take());
     }
 
     /// Searches the pixels whose radius can differ from what the map holds.

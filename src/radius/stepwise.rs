@@ -7,7 +7,7 @@ use glam::UVec2;
 use super::{Continued, of_pixels, search_source};
 use crate::error::Result;
 use crate::frame::{Changed, Frame, Rectangle};
-use crate::gl::{Gl, Pass, Program, TextureFormat};
+use crate::gl::{Gl, Pass, Program, TargetShape, Targets, TextureFormat};
 use crate::maps::RadiusMap;
 use crate::settings::{Method, Order, Settings};
 use crate::structure::Structure;
@@ -33,12 +33,23 @@ impl Stepwise {
     ) -> Result<Self> {
         let continued = if passes.len() > 1 {
             let source = search_source(density, settings, Continued::Yes);
-            Some((Program::new(gl, &source)?, RadiusMap::new(gl, size, settings.limited_mask)?))
+            let spare = Targets::new(gl, &shapes(size, settings, passes.len()))?.take();
+            Some((Program::new(gl, &source)?, RadiusMap::of(spare)))
         } else {
             None
         };
         let program = Program::new(gl, &search_source(density, settings, Continued::No))?;
         Ok(Self { program, passes, continued, settings: *settings })
+    }
+
+    pub(super) fn passes(&self) -> usize {
+        self.passes.len()
+    }
+
+    pub(super) fn resize(&mut self, targets: &mut Targets) {
+        if let Some((_, spare)) = &mut self.continued {
+            *spare = RadiusMap::of(targets.take());
+        }
     }
 
     pub(super) fn estimate(
@@ -72,6 +83,11 @@ impl Stepwise {
         }
         Ok(())
     }
+}
+
+/// A map that takes turns, if there are several passes.
+pub(super) fn shapes(size: UVec2, settings: &Settings, passes: usize) -> Vec<TargetShape> {
+    if passes > 1 { vec![RadiusMap::shape(size, settings.limited_mask)] } else { Vec::new() }
 }
 
 /// A pass that tries `radii`.

@@ -80,7 +80,7 @@ impl Renderer {
     /// # Errors
     /// [`Error::Setting`](crate::Error::Setting) outside of a setting's range, or if no light shines;
     /// [`Error::TooLarge`](crate::Error::TooLarge); [`Error::Shader`](crate::Error::Shader);
-    /// [`Error::Gl`](crate::Error::Gl) when memory runs out.
+    /// [`Error::OutOfMemory`](crate::Error::OutOfMemory).
     pub fn new(
         gl: &Gl,
         scene: &Scene,

@@ -19,7 +19,9 @@ use glam::UVec2;
 
 use crate::error::Result;
 use crate::exactness::Plan;
-use crate::gl::{Gl, Pass, Program, ShaderSource, Target, Texture, TextureFormat, glsl};
+use crate::gl::{
+    Gl, Pass, Program, ShaderSource, Target, TargetShape, Targets, TextureFormat, TextureShape, glsl,
+};
 use crate::maps::DensityMap;
 use crate::settings::{Method, Settings};
 
@@ -36,6 +38,7 @@ pub(crate) struct Mipmap {
     levels: Levels,
     /// The highest level that the search may read.
     top_level: u32,
+    settings: Settings,
 }
 
 /// How the levels above the first are filled.
@@ -47,24 +50,28 @@ enum Levels {
 
 impl Mipmap {
     pub(super) fn new(gl: &Gl, size: UVec2, density: TextureFormat, settings: &Settings) -> Result<Self> {
-        let base = match settings.method {
-            Method::NaiveMipmap => UVec2::new(size.x.next_power_of_two(), size.y.next_power_of_two()),
-            _ => size,
-        };
-        let levels = base.max_element().ilog2() + 1;
-        let chain = Texture::new(gl, super::format(settings), base, levels)?;
-        let chain = Target::single(gl, chain)?.labelled(&["mipmap of sums"]);
-        // A box never holds a block larger than itself; the naive column goes up to the end.
-        let top_level = match settings.method {
-            Method::NaiveMipmap => levels - 1,
-            _ => (levels - 1).min(pyramid::largest_level(settings.search.max_radius)),
-        };
+        let chain = Targets::new(gl, &Self::shapes(size, settings))?.take();
+        let top_level = top_level(chain.texture().levels(), settings);
         let levels = match settings.method {
             Method::AveragedMipmap => Levels::AveragedByDriver,
             _ => Levels::Summed(Program::new(gl, &sum_source(settings))?),
         };
         let seed = Program::new(gl, &super::seed_source(SEED, density, settings))?;
-        Ok(Self { chain, seed, levels, top_level })
+        Ok(Self { chain, seed, levels, top_level, settings: *settings })
+    }
+
+    pub(super) fn shapes(size: UVec2, settings: &Settings) -> Vec<TargetShape> {
+        let base = match settings.method {
+            Method::NaiveMipmap => UVec2::new(size.x.next_power_of_two(), size.y.next_power_of_two()),
+            _ => size,
+        };
+        let levels = base.max_element().ilog2() + 1;
+        vec![vec![TextureShape::with_levels("mipmap of sums", super::format(settings), base, levels)]]
+    }
+
+    pub(super) fn resize(&mut self, targets: &mut Targets) {
+        self.chain = targets.take();
+        self.top_level = top_level(self.chain.texture().levels(), &self.settings);
     }
 
     pub(super) fn build(&mut self, density: &DensityMap, plan: Plan) -> Result<()> {
@@ -91,6 +98,14 @@ impl Mipmap {
 
     pub(super) fn read_by<'a>(&'a self, pass: Pass<'a>) -> Pass<'a> {
         pass.read("pyramid", self.chain.texture()).set("top_level", self.top_level.cast_signed())
+    }
+}
+
+/// A box never holds a block larger than itself; the naive column goes up to the end.
+fn top_level(levels: u32, settings: &Settings) -> u32 {
+    match settings.method {
+        Method::NaiveMipmap => levels - 1,
+        _ => (levels - 1).min(pyramid::largest_level(settings.search.max_radius)),
     }
 }
 

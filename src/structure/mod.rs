@@ -31,7 +31,7 @@ use glam::UVec2;
 use crate::error::{Error, Result};
 use crate::exactness::Plan;
 use crate::frame::Rectangle;
-use crate::gl::{Gl, Pass, ShaderSource, Texture, TextureFormat};
+use crate::gl::{Gl, Pass, ShaderSource, TargetShape, Targets, Texture, TextureFormat};
 use crate::maps::DensityMap;
 use crate::settings::{Method, Settings, Storage};
 
@@ -60,6 +60,34 @@ impl Structure {
                 summed_area_table::SummedAreaTable::new(gl, size, density, settings)?,
             )),
         })
+    }
+
+    /// What a structure for maps of `size` allocates, in the order in which [`resize`](Self::resize) takes it.
+    pub(crate) fn shapes(size: UVec2, settings: &Settings) -> Vec<TargetShape> {
+        match settings.method {
+            Method::BruteForce => Vec::new(),
+            Method::NaiveMipmap | Method::AveragedMipmap | Method::Pyramid => {
+                mipmap::Mipmap::shapes(size, settings)
+            }
+            Method::SummedAreaTable => summed_area_table::SummedAreaTable::shapes(size, settings),
+        }
+    }
+
+    /// What it allocates more when photons are added for the first time.
+    pub(crate) fn addition_shapes(size: UVec2, settings: &Settings) -> Vec<TargetShape> {
+        match settings.method {
+            Method::SummedAreaTable => summed_area_table::SummedAreaTable::addition_shapes(size, settings),
+            _ => Vec::new(),
+        }
+    }
+
+    /// Takes targets for maps of another size; it holds nothing then.
+    pub(crate) fn resize(&mut self, size: UVec2, targets: &mut Targets) {
+        match self {
+            Self::BruteForce(_) => (),
+            Self::Mipmap(mipmap) => mipmap.resize(targets),
+            Self::SummedAreaTable(table) => table.resize(size, targets),
+        }
     }
 
     /// Fills the structure from a density map, of which `changed` differs from the one before.

@@ -5,9 +5,11 @@
 mod approximate;
 #[cfg(feature = "render")]
 mod bounce_map;
+mod calls;
 mod certificate;
 #[cfg(feature = "render")]
 mod density;
+mod driver;
 mod exactness;
 mod faults;
 mod frame_path;
@@ -21,6 +23,8 @@ mod labels;
 mod leaks;
 #[cfg(feature = "render")]
 mod live;
+mod lost;
+mod memory;
 mod objects;
 #[cfg(feature = "render")]
 mod picture;
@@ -32,6 +36,7 @@ mod shadow_map;
 mod splat;
 #[cfg(feature = "render")]
 mod stage;
+mod stage_times;
 mod state;
 mod support;
 #[cfg(feature = "render")]

@@ -41,6 +41,8 @@ enum Before {
     Defaults,
     /// The library's own state: another call of ours is under way.
     Ours,
+    /// Nothing: the context is lost.
+    Nothing,
 }
 
 impl StateGuard {
@@ -50,6 +52,9 @@ impl StateGuard {
         let guards = &gl.inner.state_guards;
         let before = if guards.get() > 0 { Before::Ours } else { Before::of(gl, PASSES) };
         guards.set(guards.get() + 1);
+        if gl.is_lost() {
+            return Self { gl: gl.clone(), rows: PASSES, before: Before::Nothing };
+        }
         for (row, instance) in instances(PASSES) {
             let is_there = matches!(before, Before::Defaults) && row.default == row.relied_on;
             if let Some(values) = row.relied_on.filter(|_| !is_there) {
@@ -74,6 +79,7 @@ impl StateGuard {
 impl Before {
     fn of(gl: &Gl, rows: &'static [Row]) -> Self {
         match gl.state_policy() {
+            _ if gl.is_lost() => Self::Nothing,
             StatePolicy::Restore => {
                 Self::Saved(instances(rows).map(|(row, instance)| row.read(gl, instance)).collect())
             }
@@ -85,6 +91,8 @@ impl Before {
 impl Drop for StateGuard {
     fn drop(&mut self) {
         match &self.before {
+            Before::Nothing => (),
+            _ if self.gl.is_lost() => (),
             Before::Saved(values) => {
                 for ((row, instance), &values) in instances(self.rows).rev().zip(values.iter().rev()) {
                     row.write(&self.gl, instance, values);

@@ -12,7 +12,9 @@ use glam::{IVec2, UVec2};
 
 use crate::error::Result;
 use crate::exactness::Plan;
-use crate::gl::{Gl, Pass, Program, ShaderSource, Target, TextureFormat, glsl};
+use crate::gl::{
+    Gl, Pass, Program, ShaderSource, Target, TargetShape, Targets, TextureFormat, TextureShape, glsl,
+};
 use crate::maps::DensityMap;
 use crate::settings::{SatSamples, Settings, Variation};
 use crate::structure;
@@ -30,13 +32,17 @@ pub(super) struct Doubling {
 }
 
 impl Doubling {
-    pub(super) fn new(gl: &Gl, spare: Target, density: TextureFormat, settings: &Settings) -> Result<Self> {
+    pub(super) fn new(gl: &Gl, size: UVec2, density: TextureFormat, settings: &Settings) -> Result<Self> {
         Ok(Self {
-            spare,
+            spare: Targets::new(gl, &shapes(size, settings))?.take(),
             seed: Program::new(gl, &structure::seed_source(SEED, density, settings))?,
             step: Program::new(gl, &doubling_source(settings))?,
             settings: *settings,
         })
+    }
+
+    pub(super) fn resize(&mut self, targets: &mut Targets) {
+        self.spare = targets.take();
     }
 
     /// Fills `table` from a density map.
@@ -89,6 +95,11 @@ impl Doubling {
             UVec2::ZERO
         }
     }
+}
+
+/// A second table.
+pub(super) fn shapes(size: UVec2, settings: &Settings) -> Vec<TargetShape> {
+    vec![vec![TextureShape::new("summed-area table", structure::format(settings), size)]]
 }
 
 /// Number and stride of the passes over a side: s^0, s^1, ... below the side's length.

@@ -23,7 +23,9 @@ use glam::UVec2;
 use crate::error::Result;
 use crate::exactness::Plan;
 use crate::frame::Rectangle;
-use crate::gl::{Gl, Pass, Program, ShaderSource, Target, Texture, TextureFormat, glsl};
+use crate::gl::{
+    Gl, Pass, Program, ShaderSource, Target, TargetShape, Targets, Texture, TextureFormat, TextureShape, glsl,
+};
 use crate::maps::DensityMap;
 use crate::settings::{SatBuild, Settings, Storage, Variation};
 
@@ -45,8 +47,8 @@ pub(crate) struct SummedAreaTable {
 #[derive(Debug)]
 struct Addition {
     program: Program,
-    added: Target,
-    spare: Target,
+    /// None after a resize.
+    tables: Option<[Target; 2]>,
 }
 
 #[derive(Debug)]
@@ -57,12 +59,11 @@ enum Build {
 
 impl SummedAreaTable {
     pub(super) fn new(gl: &Gl, size: UVec2, density: TextureFormat, settings: &Settings) -> Result<Self> {
-        let target = || table_of(gl, super::format(settings), size, "summed-area table");
         Ok(Self {
-            table: target()?,
+            table: Target::of(gl, &table_shape(size, settings))?,
             build: match settings.sat_build {
                 SatBuild::Doubling => {
-                    Build::Doubling(Box::new(doubling::Doubling::new(gl, target()?, density, settings)?))
+                    Build::Doubling(Box::new(doubling::Doubling::new(gl, size, density, settings)?))
                 }
                 SatBuild::Scan => Build::Scan(Box::new(scan::Scan::new(gl, size, density, settings)?)),
             },
@@ -70,6 +71,30 @@ impl SummedAreaTable {
             mean: None,
             settings: *settings,
         })
+    }
+
+    pub(super) fn shapes(size: UVec2, settings: &Settings) -> Vec<TargetShape> {
+        let mut shapes = vec![table_shape(size, settings)];
+        shapes.extend(match settings.sat_build {
+            SatBuild::Doubling => doubling::shapes(size, settings),
+            SatBuild::Scan => scan::shapes(size),
+        });
+        shapes
+    }
+
+    pub(super) fn addition_shapes(size: UVec2, settings: &Settings) -> Vec<TargetShape> {
+        vec![table_shape(size, settings); 2]
+    }
+
+    pub(super) fn resize(&mut self, size: UVec2, targets: &mut Targets) {
+        self.table = targets.take();
+        match &mut self.build {
+            Build::Doubling(doubling) => doubling.resize(targets),
+            Build::Scan(scan) => scan.resize(size, targets),
+        }
+        if let Some(addition) = &mut self.addition {
+            addition.tables = None;
+        }
     }
 
     /// Fills the table from a density map, of which `changed` differs from the one before.
@@ -80,16 +105,20 @@ impl SummedAreaTable {
 
     /// Adds the photons of a density map to those of the table: the table of a sum is the sum of the tables.
     pub(super) fn add(&mut self, density: &DensityMap, plan: Plan) -> Result<()> {
-        if self.addition.is_none() {
-            let table = self.table.texture();
-            let target = || table_of(table.gl(), table.format(), table.size(), "summed-area table of a part");
-            self.addition = Some(Addition {
-                program: Program::new(table.gl(), &addition_source(&self.settings))?,
-                added: target()?,
-                spare: target()?,
-            });
-        }
-        let Some(Addition { program, added, spare }) = &mut self.addition else { return Ok(()) };
+        let gl = self.table.texture().gl().clone();
+        let addition = match self.addition.take() {
+            Some(addition) => addition,
+            None => Addition { program: Program::new(&gl, &addition_source(&self.settings))?, tables: None },
+        };
+        let Addition { program, tables } = self.addition.insert(addition);
+        let made = if let Some(tables) = tables.take() {
+            tables
+        } else {
+            let shapes = Self::addition_shapes(self.table.size(), &self.settings);
+            let mut targets = Targets::new(&gl, &shapes)?;
+            [targets.take(), targets.take()]
+        };
+        let [added, spare] = tables.insert(made);
         let of_added = mean(density, &self.settings);
         self.build.fill(density, plan, Rectangle::whole(density.size()), of_added, added)?;
         self.mean = self.mean.zip(of_added).map(|(before, added)| before + added);
@@ -136,9 +165,8 @@ impl Build {
     }
 }
 
-/// A target for sums, named `label`.
-fn table_of(gl: &Gl, format: TextureFormat, size: UVec2, label: &str) -> Result<Target> {
-    Ok(Target::single(gl, Texture::new(gl, format, size, 1)?)?.labelled(&[label]))
+fn table_shape(size: UVec2, settings: &Settings) -> TargetShape {
+    vec![TextureShape::new("summed-area table", super::format(settings), size)]
 }
 
 /// What the storage takes from each count: the mean of the map, as far as its total is known.

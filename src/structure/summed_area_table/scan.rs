@@ -34,7 +34,9 @@ use glam::UVec2;
 use crate::error::Result;
 use crate::exactness::Plan;
 use crate::frame::Rectangle;
-use crate::gl::{Gl, Pass, Program, ShaderSource, Target, Texture, TextureFormat, glsl};
+use crate::gl::{
+    Gl, Pass, Program, ShaderSource, Target, TargetShape, Targets, Texture, TextureFormat, TextureShape, glsl,
+};
 use crate::maps::DensityMap;
 use crate::settings::Settings;
 use crate::structure;
@@ -62,14 +64,21 @@ pub(super) struct Scan {
 
 impl Scan {
     pub(super) fn new(gl: &Gl, size: UVec2, density: TextureFormat, settings: &Settings) -> Result<Self> {
-        let grid = (size + TILE - 1) / TILE;
+        let mut targets = Targets::new(gl, &shapes(size))?;
         Ok(Self {
-            tile_sums: Stage::new(gl, &tile_sums_source(density, settings), grid, Some(3))?,
-            rows: Direction::new(gl, Axis::Rows, grid)?,
-            columns: Direction::new(gl, Axis::Columns, grid)?,
-            tiles: Stage::new(gl, &tiles_source(density, settings), grid, Some(RUN))?,
+            tile_sums: Stage::new(gl, &tile_sums_source(density, settings), &mut targets)?,
+            rows: Direction::new(gl, Axis::Rows, grid(size), &mut targets)?,
+            columns: Direction::new(gl, Axis::Columns, grid(size), &mut targets)?,
+            tiles: Stage::new(gl, &tiles_source(density, settings), &mut targets)?,
             unpack: Program::new(gl, &unpack_source(settings))?,
         })
+    }
+
+    pub(super) fn resize(&mut self, size: UVec2, targets: &mut Targets) {
+        self.tile_sums.target = targets.take();
+        self.rows.resize(grid(size), targets);
+        self.columns.resize(grid(size), targets);
+        self.tiles.target = targets.take();
     }
 
     /// Fills `table` from a density map, of which `changed` differs from the one before.
@@ -103,6 +112,26 @@ impl Scan {
     }
 }
 
+/// Columns and rows of tiles.
+fn grid(size: UVec2) -> UVec2 {
+    (size + TILE - 1) / TILE
+}
+
+/// The sums between, in the order of the passes.
+pub(super) fn shapes(size: UVec2) -> Vec<TargetShape> {
+    let layered =
+        |label, size, layers| vec![TextureShape::layered(label, TextureFormat::Rgba32Uint, size, layers)];
+    let mut shapes = vec![layered(TILE_SUMS, grid(size), 3)];
+    for axis in [Axis::Rows, Axis::Columns] {
+        let Elements { count, lines, group_size } = Elements::of(axis, grid(size));
+        let groups = axis.place(count.div_ceil(group_size), lines);
+        shapes.push(vec![TextureShape::new(GROUP_SUMS, TextureFormat::Rgba32Uint, groups)]);
+        shapes.push(layered(ELEMENTS_BEFORE, axis.place(count.div_ceil(RUN), lines), RUN));
+    }
+    shapes.push(layered(TILES, grid(size), RUN));
+    shapes
+}
+
 /// Adds what a pass over the map's counts needs.
 fn of_map<'a>(pass: Pass<'a>, density: &'a DensityMap, plan: Plan) -> Pass<'a> {
     pass.read("density", density.texture())
@@ -118,16 +147,8 @@ struct Stage {
 }
 
 impl Stage {
-    fn new(gl: &Gl, source: &ShaderSource, size: UVec2, layers: Option<u32>) -> Result<Self> {
-        let format = TextureFormat::Rgba32Uint;
-        let texture = match layers {
-            Some(layers) => Texture::layered(gl, format, size, layers)?,
-            None => Texture::new(gl, format, size, 1)?,
-        };
-        Ok(Self {
-            program: Program::new(gl, source)?,
-            target: Target::single(gl, texture)?.labelled(&[source.label()]),
-        })
+    fn new(gl: &Gl, source: &ShaderSource, targets: &mut Targets) -> Result<Self> {
+        Ok(Self { program: Program::new(gl, source)?, target: targets.take() })
     }
 }
 
@@ -147,44 +168,64 @@ impl Axis {
     }
 }
 
+/// What is scanned along one axis.
+#[derive(Clone, Copy, Debug)]
+struct Elements {
+    /// In each line.
+    count: u32,
+    lines: u32,
+    /// In each group.
+    group_size: u32,
+}
+
+impl Elements {
+    /// For a `grid` of tiles.
+    fn of(axis: Axis, grid: UVec2) -> Self {
+        let (count, lines) = match axis {
+            // Two elements, of four rows each, are in every tile.
+            Axis::Rows => (grid.x, 2 * grid.y),
+            Axis::Columns => (grid.y, grid.x),
+        };
+        // As many groups as elements in a group, or nearly: a run then adds fewest of both.
+        Self { count, lines, group_size: count.isqrt().next_multiple_of(RUN) }
+    }
+}
+
 /// The scan of what tiles hold along one axis: four sums an element.
 #[derive(Debug)]
 struct Direction {
     axis: Axis,
-    elements: u32,
-    group_size: u32,
+    elements: Elements,
     group_sums: Stage,
     elements_before: Stage,
 }
 
 impl Direction {
     /// For a `grid` of tiles.
-    fn new(gl: &Gl, axis: Axis, grid: UVec2) -> Result<Self> {
-        let (elements, lines) = match axis {
-            // Two elements, of four rows each, are in every tile.
-            Axis::Rows => (grid.x, 2 * grid.y),
-            Axis::Columns => (grid.y, grid.x),
-        };
-        let place = |along: u32| axis.place(along, lines);
+    fn new(gl: &Gl, axis: Axis, grid: UVec2, targets: &mut Targets) -> Result<Self> {
         let [group_sums, elements_before] = scan_sources(axis);
-        // As many groups as elements in a group, or nearly: a run then adds fewest of both.
-        let group_size = elements.isqrt().next_multiple_of(RUN);
         Ok(Self {
             axis,
-            elements,
-            group_size,
-            group_sums: Stage::new(gl, &group_sums, place(elements.div_ceil(group_size)), None)?,
-            elements_before: Stage::new(gl, &elements_before, place(elements.div_ceil(RUN)), Some(RUN))?,
+            elements: Elements::of(axis, grid),
+            group_sums: Stage::new(gl, &group_sums, targets)?,
+            elements_before: Stage::new(gl, &elements_before, targets)?,
         })
+    }
+
+    fn resize(&mut self, grid: UVec2, targets: &mut Targets) {
+        self.elements = Elements::of(self.axis, grid);
+        self.group_sums.target = targets.take();
+        self.elements_before.target = targets.take();
     }
 
     /// Sums all elements before each in some of the lines, read from `inputs`.
     fn scan(&mut self, lines: Range<u32>, inputs: &[(&'static str, &Texture)]) -> Result<()> {
-        let Self { axis, elements, group_size, group_sums, elements_before } = self;
+        let Self { axis, elements, group_sums, elements_before } = self;
+        let Elements { count, group_size, .. } = *elements;
         let first = axis.place(0, lines.start);
         let end = |along: u32| axis.place(along, lines.end);
-        let (groups, runs) = (elements.div_ceil(*group_size), elements.div_ceil(RUN));
-        let counts = (elements.cast_signed(), group_size.cast_signed());
+        let (groups, runs) = (count.div_ceil(group_size), count.div_ceil(RUN));
+        let counts = (count.cast_signed(), group_size.cast_signed());
         of_elements(Pass::new(GROUP_SUMS, &group_sums.program), inputs, counts).fill_between(
             first,
             end(groups),

@@ -221,7 +221,9 @@ pub fn answer(
             match Machine::prepared(&mut machine, gl, &bench.density, variant) {
                 Ok(machine) => match bench.run(machine, question, &variant.name, sample_ms) {
                     Ok(row) => answers.rows.push(row),
-                    Err(error @ Error::Gl { .. }) => return Err(error),
+                    Err(error @ (Error::Gl { .. } | Error::ContextLost | Error::OutOfMemory { .. })) => {
+                        return Err(error);
+                    }
                     Err(error) => answers.leave_out(bench, question, variant, &error),
                 },
                 Err(error) => answers.leave_out(bench, question, variant, &error),

@@ -1,0 +1,290 @@
+//! A context that is gone: given up by the host, destroyed, or lost by the driver.
+
+#![expect(unsafe_code, reason = "a host makes contexts current by itself")]
+
+use std::any::Any;
+use std::ffi::c_void;
+use std::process::Command;
+
+use varikernel::gl::{StageTimes, Timer};
+use varikernel::settings::{Method, Order, Settings};
+use varikernel::{
+    AdaptivePipeline, CountBounds, DensityMap, Error, Frame, Gl, Image, Mask, MaskMaker, RadiusMap,
+    RadiusPipeline,
+};
+
+use crate::calls::{Calls, counted};
+use crate::driver::{self, LATER_ERROR, PENDING_ERROR, live};
+use crate::support::{egl, random_map};
+
+/// What a host may hold.
+struct Objects {
+    counts: Image<u32>,
+    map: DensityMap,
+    mask: Mask,
+    maker: MaskMaker,
+    pipeline: RadiusPipeline,
+    adaptive: AdaptivePipeline,
+    borrowed: RadiusMap,
+    timer: Timer,
+    times: StageTimes,
+}
+
+impl Objects {
+    /// All of them used once.
+    fn new(gl: &Gl) -> Self {
+        let counts = random_map(70, 9, 3);
+        let map = DensityMap::upload(gl, &counts, CountBounds::UNKNOWN).unwrap();
+        let (size, settings) = (counts.size(), Settings::default());
+        let mut pipeline = RadiusPipeline::new(gl, size, map.format(), settings).unwrap();
+        let radii = pipeline.render(&map).unwrap().texture();
+        pipeline.certify(&map).unwrap();
+        let mut adaptive = AdaptivePipeline::new(gl, size, map.format(), settings).unwrap();
+        adaptive.update(&Frame::new(&map)).unwrap();
+        let mut times = StageTimes::new(gl).unwrap();
+        times.begin_frame();
+        pipeline.render(&map).unwrap();
+        times.end_frame();
+        Self {
+            mask: Mask::upload(gl, &Image::filled(size, 1_u8)).unwrap(),
+            maker: MaskMaker::new(gl, size).unwrap(),
+            borrowed: RadiusMap::borrow(gl, radii, None).unwrap(),
+            timer: Timer::new(gl).unwrap(),
+            counts,
+            map,
+            pipeline,
+            adaptive,
+            times,
+        }
+    }
+
+    /// What each public call answers.
+    fn call_all(&mut self, gl: &Gl) -> Vec<(&'static str, Option<Error>)> {
+        fn failure<T>(result: varikernel::Result<T>) -> Option<Error> {
+            result.err()
+        }
+        let (size, format) = (self.counts.size(), self.map.format());
+        let name = self.map_name();
+        let Self { counts, map, mask, maker, pipeline, adaptive, borrowed, timer, times } = self;
+        let frame = Frame::new(map);
+        times.begin_frame();
+        let answers = vec![
+            ("RadiusPipeline::render", failure(pipeline.render(map))),
+            ("RadiusPipeline::build", failure(pipeline.build(map))),
+            ("RadiusPipeline::search", failure(pipeline.search(map))),
+            (
+                "RadiusPipeline::update, nothing changed",
+                failure(pipeline.update(&Frame { changed: varikernel::Changed::Nothing, ..frame })),
+            ),
+            ("RadiusPipeline::certify", failure(pipeline.certify(map))),
+            ("RadiusPipeline::certify_radii", failure(pipeline.certify_radii(map, borrowed))),
+            ("RadiusPipeline::set_order", failure(pipeline.set_order(Order::Forward))),
+            ("RadiusPipeline::resize", failure(pipeline.resize(2 * size))),
+            ("RadiusPipeline::resize, same", failure(pipeline.resize(size))),
+            ("RadiusPipeline::new", failure(RadiusPipeline::new(gl, size, format, Settings::default()))),
+            (
+                "RadiusPipeline::new, nothing to build",
+                failure(RadiusPipeline::new(gl, size, format, Settings::of(Method::BruteForce))),
+            ),
+            ("AdaptivePipeline::update", failure(adaptive.update(&frame))),
+            ("AdaptivePipeline::resize", failure(adaptive.resize(2 * size))),
+            ("AdaptivePipeline::new", failure(AdaptivePipeline::new(gl, size, format, Settings::default()))),
+            ("DensityMap::upload", failure(DensityMap::upload(gl, counts, CountBounds::UNKNOWN))),
+            ("DensityMap::borrow", failure(DensityMap::borrow(gl, name, CountBounds::UNKNOWN))),
+            ("RadiusMap::read", failure(pipeline.radii().read())),
+            ("RadiusMap::read_limited", failure(borrowed.read_limited())),
+            ("RadiusMap::borrow", failure(RadiusMap::borrow(gl, name, None))),
+            ("Mask::upload", failure(Mask::upload(gl, &Image::filled(size, 1_u8)))),
+            ("Mask::borrow", failure(Mask::borrow(gl, name))),
+            ("MaskMaker::new", failure(MaskMaker::new(gl, size))),
+            ("MaskMaker::from_depth", failure(maker.from_depth(name, false))),
+            ("MaskMaker::from_stencil", failure(maker.from_stencil(name, 1, 1))),
+            ("Timer::new", failure(Timer::new(gl))),
+            ("Timer::time", failure(timer.time(|| Ok(())))),
+            ("StageTimes::new", failure(StageTimes::new(gl))),
+            ("DensityMap::replace", failure(map.replace(counts, CountBounds::UNKNOWN))),
+        ];
+        times.end_frame();
+        drop(times.poll());
+        assert_eq!(mask.size(), size);
+        answers
+    }
+
+    fn map_name(&self) -> glow::Texture {
+        self.borrowed.texture()
+    }
+
+    fn into_boxes(self) -> Vec<Box<dyn Any>> {
+        let Self { map, mask, maker, pipeline, adaptive, borrowed, timer, times, .. } = self;
+        vec![
+            Box::new(map),
+            Box::new(mask),
+            Box::new(maker),
+            Box::new(pipeline),
+            Box::new(adaptive),
+            Box::new(borrowed),
+            Box::new(timer),
+            Box::new(times),
+        ]
+    }
+}
+
+fn assert_all_lost(answers: Vec<(&'static str, Option<Error>)>) {
+    for (call, answer) in answers {
+        assert!(matches!(answer, Some(Error::ContextLost)), "{call}: {answer:?}");
+    }
+}
+
+#[test]
+fn nothing_is_called_once_a_context_was_given_up() {
+    let mut calls = Calls::new();
+    // SAFETY: a trampoline calls the command that it stands for.
+    let gl = unsafe { driver::open_through(counted) };
+    let mut objects = Objects::new(&gl);
+    let seen = calls.all();
+    assert!(seen.len() > 60, "the commands are counted: {seen:?}");
+    assert!(!gl.is_lost());
+    gl.clone().abandon();
+    assert!(gl.is_lost());
+    calls.restart();
+    let answers = objects.call_all(&gl);
+    assert_eq!(calls.all(), []);
+    assert_all_lost(answers);
+    assert!(gl.texture_bytes() > 0);
+    let before = live();
+    for object in objects.into_boxes() {
+        drop(object);
+    }
+    // What went with its context is no longer held.
+    assert_eq!((gl.texture_bytes(), gl.buffer_bytes()), (0, 0));
+    drop(gl);
+    assert_eq!(calls.all(), []);
+    assert!(live() == before && before[0] > 0, "nothing was deleted: {before:?}");
+}
+
+#[test]
+fn a_context_that_the_driver_lost_is_an_error_from_then_on() {
+    let mut calls = Calls::new();
+    // SAFETY: a trampoline calls the command that it stands for.
+    let gl = unsafe { driver::open_through(counted) };
+    let mut objects = Objects::new(&gl);
+    PENDING_ERROR.set(glow::CONTEXT_LOST);
+    let answer = objects.pipeline.render(&objects.map).map(drop);
+    assert!(matches!(answer, Err(Error::ContextLost)), "{answer:?}");
+    assert!(gl.is_lost());
+    calls.restart();
+    let answers = objects.call_all(&gl);
+    assert_all_lost(answers);
+    drop(objects);
+    drop(gl);
+    assert_eq!(calls.all(), []);
+}
+
+/// The driver tells of the loss at each of its answers: every call that asks sees it, or goes on unharmed.
+#[test]
+fn a_loss_in_the_middle_of_a_call_is_told() {
+    let counts = random_map(12, 19, 3);
+    let mut told = 0;
+    for answer in 0.. {
+        let gl = driver::open();
+        let map = DensityMap::upload(&gl, &counts, CountBounds::UNKNOWN).unwrap();
+        LATER_ERROR.set(Some((answer, glow::CONTEXT_LOST)));
+        let result = RadiusPipeline::new(&gl, map.size(), map.format(), Settings::default()).and_then(
+            |mut pipeline| {
+                let radii = pipeline.render(&map)?;
+                DensityMap::borrow(&gl, radii.texture(), CountBounds::UNKNOWN)?;
+                radii.read()
+            },
+        );
+        if LATER_ERROR.replace(None).is_some() {
+            result.unwrap();
+            break;
+        }
+        assert!(matches!(result, Err(Error::ContextLost)), "answer {answer}: {result:?}");
+        told += 1;
+    }
+    assert!(told > 10, "{told}");
+}
+
+#[test]
+fn out_of_memory_says_how_much_was_asked_for_and_what_to_do() {
+    let gl = driver::open();
+    let settings = Settings { limited_mask: false, ..Settings::of(Method::BruteForce) };
+    let counts = random_map(12, 19, 3);
+    let map = DensityMap::upload(&gl, &counts, CountBounds::UNKNOWN).unwrap();
+    let before = live();
+    let size = glam::UVec2::new(100, 50);
+    // Shaders fail before the one texture does.
+    let mut failures = (0..9).map(|call| {
+        driver::FAIL_AT.set(Some(call));
+        RadiusPipeline::new(&gl, size, map.format(), settings).unwrap_err()
+    });
+    let error = failures.find(|error| matches!(error, Error::OutOfMemory { .. })).unwrap();
+    let Error::OutOfMemory { bytes, held, .. } = &error else { panic!("{error}") };
+    // Radii and counts are 4 bytes a pixel.
+    assert_eq!((*bytes, *held), (Some(20_000), 4 * 12 * 19), "what failed is no longer held");
+    let text = error.to_string();
+    for part in ["GL_R32UI texture of 100 x 50", "20000 bytes", "help:", "memory_required"] {
+        assert!(text.contains(part), "{text}");
+    }
+    assert_eq!(live(), before);
+    assert!(!gl.is_lost(), "a host may go on with less");
+    // As the driver says it of a draw.
+    let mut pipeline = RadiusPipeline::new(&gl, map.size(), map.format(), settings).unwrap();
+    LATER_ERROR.set(Some((1, glow::OUT_OF_MEMORY)));
+    let error = pipeline.render(&map).map(drop).unwrap_err();
+    assert!(matches!(error, Error::OutOfMemory { bytes: None, .. }), "{error}");
+    let radii = pipeline.render(&map).unwrap().read().unwrap();
+    assert_eq!(radii, varikernel::reference::radius(&counts, settings.search).radius);
+}
+
+const CHILD: &str = "VARIKERNEL_TEST_WITHOUT_CONTEXT";
+
+/// In a process of its own, which would go down with a crash: the host has taken the context away before our objects were
+/// dropped, with a word ([`Gl::abandon`]) or without.
+#[test]
+fn objects_are_dropped_without_a_current_context() {
+    match std::env::var(CHILD).as_deref() {
+        Ok(kind) => drop_without_context(kind == "abandoned"),
+        Err(_) => {
+            for kind in ["abandoned", "silent"] {
+                let output = Command::new(std::env::current_exe().unwrap())
+                    .args(["--exact", "lost::objects_are_dropped_without_a_current_context", "--nocapture"])
+                    .env(CHILD, kind)
+                    .output()
+                    .unwrap();
+                let said = String::from_utf8_lossy(&output.stdout);
+                assert!(output.status.success() && said.contains("1 passed"), "{kind}: {output:?}");
+                let also_said = String::from_utf8_lossy(&output.stderr);
+                assert!(also_said.contains("dropped 8 objects and the handle"), "{kind}: {also_said}");
+            }
+        }
+    }
+}
+
+#[expect(clippy::print_stderr, reason = "the process that started this one reads it")]
+fn drop_without_context(abandoned: bool) {
+    type MakeCurrent = extern "C" fn(*mut c_void, *mut c_void, *mut c_void, *mut c_void) -> u32;
+    let gl = egl();
+    let objects = Objects::new(&gl);
+    if abandoned {
+        gl.abandon();
+    }
+    // SAFETY: EGL is loaded already, and these are the types of its functions.
+    unsafe {
+        let library = libloading::Library::new("libEGL.so.1").unwrap();
+        let display = library.get::<extern "C" fn() -> *mut c_void>(b"eglGetCurrentDisplay\0").unwrap()();
+        let none = std::ptr::null_mut();
+        let made = library.get::<MakeCurrent>(b"eglMakeCurrent\0").unwrap()(display, none, none, none);
+        assert_eq!(made, 1);
+        let context = library.get::<extern "C" fn() -> *mut c_void>(b"eglGetCurrentContext\0").unwrap()();
+        assert!(context.is_null(), "no context is current");
+    }
+    let objects = objects.into_boxes();
+    let count = objects.len();
+    for object in objects {
+        drop(object);
+    }
+    drop(gl);
+    eprintln!("dropped {count} objects and the handle");
+}
