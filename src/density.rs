@@ -13,7 +13,10 @@ use glam::{UVec2, Vec4};
 
 use crate::error::{Error, Result};
 use crate::exactness::CountBounds;
-use crate::gl::{Gl, Pass, Program, ShaderSource, StateGuard, Target, Texture, TextureFormat, glsl};
+use crate::gl::{
+    Gl, Pass, Program, ShaderSource, StateGuard, Target, TargetShape, Targets, Texture, TextureFormat,
+    TextureShape, glsl,
+};
 use crate::image::Image;
 use crate::maps::{DensityMap, PhotonPoints, SurfaceMaps};
 
@@ -42,14 +45,25 @@ impl DensityStage {
     /// [`Error::TooLarge`]; [`Error::Shader`] if the driver refuses the shader; [`Error::Gl`] when memory runs out.
     pub fn new(gl: &Gl, size: UVec2) -> Result<Self> {
         let _state = StateGuard::new(gl);
-        let textures = vec![
-            Texture::new(gl, TextureFormat::R32Float, size, 1)?,
-            Texture::new(gl, TextureFormat::Rgba32Float, size, 1)?,
-        ];
-        let mut target = Target::new(gl, textures)?.labelled(&["density map", "power of photons"]);
+        let mut target = Target::of(gl, &Self::shape(size))?;
         target.clear_floats(&[Vec4::ZERO; 2]);
         let map = DensityMap::of_stage(target.texture());
         Ok(Self { gl: gl.clone(), program: Program::new(gl, &source())?, target, map, read: (0, 0) })
+    }
+
+    /// The counts, and the power with the count again.
+    pub(crate) fn shape(size: UVec2) -> TargetShape {
+        vec![
+            TextureShape::new("density map", TextureFormat::R32Float, size),
+            TextureShape::new("power of photons", TextureFormat::Rgba32Float, size),
+        ]
+    }
+
+    /// Goes on with another target, without photons.
+    pub(crate) fn resize(&mut self, targets: &mut Targets) {
+        self.target = targets.take();
+        self.map = DensityMap::of_stage(self.target.texture());
+        self.clear();
     }
 
     /// Forgets all photons.

@@ -10,7 +10,7 @@ use glam::UVec2;
 use crate::density::{self, DensityStage};
 use crate::error::Result;
 use crate::frame::Frame;
-use crate::gl::{Gl, ShaderSource, TextureFormat};
+use crate::gl::{Gl, ShaderSource, StateGuard, Targets, TextureFormat, bytes_of};
 use crate::maps::{ChosenRadius, DensityMap, IrradianceMap, PhotonPoints, RadiusMap, SurfaceMaps};
 use crate::pipeline::RadiusPipeline;
 use crate::settings::{IrradianceSettings, Kernel, RadiusChoice};
@@ -22,6 +22,7 @@ use crate::splat::{self, SplatStage};
 /// it fails. The stages are usable apart: [`DensityStage`], [`RadiusPipeline`], [`SplatStage`].
 #[derive(Debug)]
 pub struct IrradiancePipeline {
+    gl: Gl,
     settings: IrradianceSettings,
     density: DensityStage,
     /// For variable radii.
@@ -41,11 +42,49 @@ impl IrradiancePipeline {
         let fixed = matches!(settings.radius, RadiusChoice::Fixed(_));
         let radii = || RadiusPipeline::new(gl, size, TextureFormat::R32Float, settings.search);
         Ok(Self {
+            gl: gl.clone(),
             settings,
             density: DensityStage::new(gl, size)?,
             radii: if fixed { None } else { Some(radii()?) },
             splat: SplatStage::new(gl, size, settings.kernel, fixed)?,
         })
+    }
+
+    /// Bytes of textures and buffers for surfaces of `size`, without a context: what [`new`](Self::new) and
+    /// [`resize`](Self::resize) allocate. A driver may add to it; surfaces and photons are the host's.
+    ///
+    /// # Errors
+    /// [`Error::Setting`](crate::Error::Setting) outside of a setting's range.
+    pub fn memory_required(size: UVec2, settings: &IrradianceSettings) -> Result<u64> {
+        settings.validate()?;
+        // Refuses an empty size as well.
+        let radii = RadiusPipeline::memory_required(size, &settings.search)?.at_creation;
+        let radii = if settings.radius == RadiusChoice::Variable { radii } else { 0 };
+        Ok(radii + bytes_of(&[DensityStage::shape(size)]) + SplatStage::bytes(size))
+    }
+
+    /// From now on for surfaces of `size`, without photons: programs stay, textures are made anew. The same size is free, and
+    /// changes nothing.
+    ///
+    /// # Errors
+    /// Those of [`RadiusPipeline::resize`]; but for a lost context, the pipeline then goes on at its old size, with what it held.
+    pub fn resize(&mut self, size: UVec2) -> Result<()> {
+        if size == self.density.map().size() {
+            return self.gl.current().map(drop);
+        }
+        let state = StateGuard::new(&self.gl);
+        let mut shapes = vec![DensityStage::shape(size)];
+        shapes.extend(SplatStage::shapes(size));
+        let mut targets = Targets::new(&self.gl, &shapes)?;
+        self.gl.check("resizing an irradiance pipeline")?;
+        drop(state);
+        if let Some(radii) = &mut self.radii {
+            radii.resize(size)?;
+        }
+        self.density.resize(&mut targets);
+        self.splat.resize(&mut targets);
+        targets.finish();
+        Ok(())
     }
 
     /// The light of these photons, which carry the power of all lights together.

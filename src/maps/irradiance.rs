@@ -3,7 +3,9 @@
 use glam::UVec2;
 
 use crate::error::Result;
-use crate::gl::{Gl, StateGuard, Target, Texture, TextureFormat};
+#[cfg(feature = "render")]
+use crate::gl::Texture;
+use crate::gl::{StateGuard, Target, TargetShape, TextureFormat, TextureShape};
 use crate::image::Image;
 
 /// Indirect irradiance: power per area in scene units, linear RGB, in GL_RGBA32F.
@@ -15,10 +17,14 @@ pub struct IrradianceMap {
 }
 
 impl IrradianceMap {
-    /// An empty map.
-    pub(crate) fn new(gl: &Gl, size: UVec2) -> Result<Self> {
-        let texture = Texture::new(gl, TextureFormat::Rgba32Float, size, 1)?;
-        Ok(Self { target: Target::single(gl, texture)?.labelled(&["irradiance"]) })
+    /// The plane of a map.
+    pub(crate) fn shape(size: UVec2) -> TargetShape {
+        vec![TextureShape::new("irradiance", TextureFormat::Rgba32Float, size)]
+    }
+
+    /// The map that a target of such a shape is.
+    pub(crate) fn of(target: Target) -> Self {
+        Self { target }
     }
 
     /// Columns and rows.

@@ -10,7 +10,7 @@ use glam::UVec2;
 use super::{check, read_radius};
 use crate::density::DensityStage;
 use crate::error::Result;
-use crate::gl::{Gl, Pass, Program, ShaderSource, StateGuard, glsl};
+use crate::gl::{Gl, Pass, Program, ShaderSource, StateGuard, Target, glsl};
 use crate::maps::{ChosenRadius, IrradianceMap, SurfaceMaps};
 use crate::settings::Kernel;
 
@@ -35,7 +35,8 @@ impl GatherStage {
     pub fn new(gl: &Gl, size: UVec2, kernel: Kernel, fixed: bool, correct: bool) -> Result<Self> {
         let _state = StateGuard::new(gl);
         let program = Program::new(gl, &source(kernel, fixed, correct))?;
-        Ok(Self { gl: gl.clone(), program, fixed, irradiance: IrradianceMap::new(gl, size)? })
+        let irradiance = IrradianceMap::of(Target::of(gl, &IrradianceMap::shape(size))?);
+        Ok(Self { gl: gl.clone(), program, fixed, irradiance })
     }
 
     /// Gathers at every pixel from the power of each pixel's photons and their count, as `density` added them up.

@@ -24,7 +24,10 @@ pub use gather::GatherStage;
 use glam::{UVec2, Vec4};
 
 use crate::error::{Error, Result};
-use crate::gl::{Gl, Pass, Program, ShaderSource, StateGuard, Target, Texture, TextureFormat, glsl};
+use crate::gl::{
+    Gl, Pass, Program, ShaderSource, StateGuard, Target, TargetShape, Targets, TextureFormat, TextureShape,
+    bytes_of, glsl,
+};
 use crate::maps::{ChosenRadius, IrradianceMap, PhotonPoints, SurfaceMaps};
 use crate::settings::Kernel;
 
@@ -61,10 +64,10 @@ impl SplatStage {
     /// [`Error::TooLarge`]; [`Error::Shader`] if the driver refuses a shader; [`Error::Gl`] when memory runs out.
     pub fn new(gl: &Gl, size: UVec2, kernel: Kernel, fixed: bool) -> Result<Self> {
         let _state = StateGuard::new(gl);
-        let table = Texture::new(gl, TextureFormat::R32Float, UVec2::splat(TABLE_SIDE), 1)?;
-        let of_chunk = Texture::new(gl, TextureFormat::Rgba32Float, size, 1)?;
         let [covered, spread, addition] = sources(kernel, fixed);
-        let mut irradiance = IrradianceMap::new(gl, size)?;
+        let mut targets = Targets::new(gl, &Self::shapes(size))?;
+        let of_chunk = targets.take();
+        let mut irradiance = IrradianceMap::of(targets.take());
         irradiance.target().clear_floats(&[Vec4::ZERO]);
         Ok(Self {
             gl: gl.clone(),
@@ -72,10 +75,27 @@ impl SplatStage {
             spread: Program::new(gl, &spread)?,
             addition: Program::new(gl, &addition)?,
             fixed,
-            table: Target::single(gl, table)?.labelled(&[COVERED]),
-            of_chunk: Target::single(gl, of_chunk)?.labelled(&[SPREAD]),
+            table: Target::of(gl, &vec![table()])?,
+            of_chunk,
             irradiance,
         })
+    }
+
+    /// What depends on the size: the sum of a chunk, and of all.
+    pub(crate) fn shapes(size: UVec2) -> [TargetShape; 2] {
+        [vec![TextureShape::new(SPREAD, TextureFormat::Rgba32Float, size)], IrradianceMap::shape(size)]
+    }
+
+    /// Bytes of the textures for maps of `size`, and of the table.
+    pub(crate) fn bytes(size: UVec2) -> u64 {
+        table().bytes() + bytes_of(&Self::shapes(size))
+    }
+
+    /// Goes on with other targets, still dark.
+    pub(crate) fn resize(&mut self, targets: &mut Targets) {
+        self.of_chunk = targets.take();
+        self.irradiance = IrradianceMap::of(targets.take());
+        self.clear();
     }
 
     /// Forgets all light.
@@ -136,6 +156,11 @@ impl SplatStage {
     pub fn irradiance(&self) -> &IrradianceMap {
         &self.irradiance
     }
+}
+
+/// The covered areas of a chunk's photons.
+fn table() -> TextureShape {
+    TextureShape::new(COVERED, TextureFormat::R32Float, UVec2::splat(TABLE_SIDE))
 }
 
 /// Checks what kernels are drawn with.

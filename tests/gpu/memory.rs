@@ -4,14 +4,17 @@
 
 use glam::UVec2;
 use varikernel::gl::DeviceInfo;
-use varikernel::settings::{Edges, Method, Order, SatBuild, Search, Settings};
+use varikernel::settings::{
+    Edges, IrradianceSettings, Method, Order, RadiusChoice, SatBuild, Search, Settings,
+};
 use varikernel::{
-    AdaptivePipeline, Changed, CountBounds, DensityMap, Error, Frame, Gl, Image, Mask, RadiusPipeline,
-    reference,
+    AdaptivePipeline, Changed, CountBounds, DensityMap, Error, Frame, Gl, Image, IrradiancePipeline, Mask,
+    RadiusPipeline, reference,
 };
 
 use crate::calls::{Calls, counted};
 use crate::driver;
+use crate::host_picture::HostPicture;
 use crate::support::{egl, exact_variants, random_map, search, sparse_map};
 
 const SIZES: [UVec2; 5] =
@@ -263,4 +266,53 @@ fn an_adaptive_pipeline_is_resized_while_a_census_is_on_its_way() {
     calls.restart();
     pipeline.resize(large.size()).unwrap();
     assert_eq!(calls.all(), []);
+}
+
+#[test]
+fn irradiance_takes_what_it_says_and_resizes_without_compiling() {
+    let gl = egl();
+    for radius in [RadiusChoice::Variable, RadiusChoice::Fixed(3)] {
+        let settings = IrradianceSettings { radius, ..IrradianceSettings::default() };
+        let mut pipeline = IrradiancePipeline::new(&gl, UVec2::ONE, settings).unwrap();
+        let mut refused = 0;
+        for size in SIZES {
+            pipeline.resize(size).unwrap();
+            let required = IrradiancePipeline::memory_required(size, &settings).unwrap();
+            assert_eq!(held(&gl), required, "{size}, {radius:?}");
+            let HostPicture { surfaces, photons, positions, .. } = HostPicture::new(&gl, size);
+            let hosts = u64::from(size.element_product()) * 16 + 40 * photons.count();
+            // The first frame allocates nothing.
+            let found = pipeline.render(&surfaces, &photons).unwrap().read().unwrap();
+            assert_eq!(held(&gl), required + hosts, "{size}, {radius:?}");
+            let mut fresh = IrradiancePipeline::new(&gl, size, settings).unwrap();
+            assert_eq!(held(&gl), 2 * required + hosts, "{size}, {radius:?}");
+            assert_eq!(fresh.render(&surfaces, &photons).unwrap().read().unwrap(), found);
+            // Too large: nothing changes.
+            let too_large = UVec2::new(gl.info().max_texture_size + 1, 1);
+            assert!(matches!(pipeline.resize(too_large), Err(Error::TooLarge { .. })));
+            refused += 1;
+            assert_eq!(pipeline.irradiance().read().unwrap(), found);
+            drop((surfaces, photons, positions, fresh));
+        }
+        assert_eq!(refused, SIZES.len());
+    }
+    assert_eq!(held(&gl), 0);
+    // 10 x 3 pixels: 20 bytes of counts and power, 32 of light, 256 KiB of a table; radii apart.
+    let fixed = IrradianceSettings { radius: RadiusChoice::Fixed(1), ..IrradianceSettings::default() };
+    let bytes = IrradiancePipeline::memory_required(UVec2::new(10, 3), &fixed).unwrap();
+    assert_eq!(bytes, 30 * 52 + 4 * 256 * 256);
+    assert!(IrradiancePipeline::memory_required(UVec2::new(0, 3), &fixed).is_err());
+}
+
+#[test]
+fn a_resized_irradiance_pipeline_compiles_nothing() {
+    let calls = Calls::new();
+    // SAFETY: a trampoline calls the command that it stands for.
+    let gl = unsafe { driver::open_through(counted) };
+    let mut pipeline = IrradiancePipeline::new(&gl, UVec2::new(9, 9), IrradianceSettings::default()).unwrap();
+    let compiled = || calls.of("glCompileShader") + calls.of("glLinkProgram");
+    let before = compiled();
+    assert!(before > 0);
+    pipeline.resize(UVec2::new(40, 20)).unwrap();
+    assert_eq!(compiled(), before);
 }
