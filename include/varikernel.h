@@ -1,0 +1,359 @@
+/* varikernel: the smallest box radius that holds n photons, for every pixel of a photon density map, in OpenGL 3.3
+ * core, inside the context of a host.
+ *
+ * Generated from src/capi by `VARIKERNEL_UPDATE=1 cargo test --test capi header`; do not edit. Licence: MIT or
+ * Apache-2.0.
+ *
+ * Threads: a handle is used and destroyed on the thread that made it, with the OpenGL context current that was current
+ * then. Several contexts, each on its thread, may live side by side. Of contexts that share objects, ours are usable in
+ * one: vertex arrays and framebuffers are not shared. The textures are, after a fence of yours.
+ *
+ * OpenGL state: each call puts back what it touches, also when it fails; crate documentation, "The host's OpenGL state",
+ * lists all of it. GL errors that were pending are taken. Nothing waits for the GPU.
+ *
+ * Errors: a call answers with a status; varikernel_last_error() has the text. No handle and no texture name is written
+ * by a call that fails. A status is no promise for pointers that are dangling or handles that were destroyed.
+ */
+
+#ifndef VARIKERNEL_H
+#define VARIKERNEL_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/**
+ * The version of this header, major part.
+ */
+#define VARIKERNEL_VERSION_MAJOR 0
+
+/**
+ * The version of this header, minor part.
+ */
+#define VARIKERNEL_VERSION_MINOR 1
+
+/**
+ * The version of this header, patch part.
+ */
+#define VARIKERNEL_VERSION_PATCH 0
+
+/**
+ * edges: nothing is outside the map.
+ */
+#define VARIKERNEL_EDGES_ZERO 0
+
+/**
+ * edges: outside is as much, per area, as the box holds inside.
+ */
+#define VARIKERNEL_EDGES_SCALE 1
+
+/**
+ * order: halving the few radii that bounds for tiles and blocks leave; fast whatever MR and density.
+ */
+#define VARIKERNEL_ORDER_BRACKETED 0
+
+/**
+ * order: 1, 2, 3, ...; the fastest where radii are small.
+ */
+#define VARIKERNEL_ORDER_FORWARD 1
+
+/**
+ * order: halving 1 to MR.
+ */
+#define VARIKERNEL_ORDER_BINARY 2
+
+/**
+ * order: chosen for each frame by the photons of the ones before, without waiting. Memory grows when an order is first
+ * used.
+ */
+#define VARIKERNEL_ORDER_ADAPTIVE 3
+
+/**
+ * photons_at_most: the host does not know.
+ */
+#define VARIKERNEL_PHOTONS_UNKNOWN UINT64_MAX
+
+/**
+ * changed: anything may have.
+ */
+#define VARIKERNEL_CHANGED_EVERYTHING 0
+
+/**
+ * changed: nothing has; the textures of the frame before are the answer, and nothing is drawn.
+ */
+#define VARIKERNEL_CHANGED_NOTHING 1
+
+/**
+ * changed: a rectangle of the density map or the mask; what reaches past the map is ignored.
+ */
+#define VARIKERNEL_CHANGED_RECTANGLE 2
+
+/**
+ * changed: the density map holds new photons alone, to be added to those before.
+ */
+#define VARIKERNEL_CHANGED_ADDED 3
+
+/**
+ * How a call ended.
+ */
+typedef enum varikernel_status {
+    /**
+     * All went well.
+     */
+    VARIKERNEL_STATUS_OK = 0,
+    /**
+     * A pointer or texture name is null, or a struct has the size of another version.
+     */
+    VARIKERNEL_STATUS_INVALID_ARGUMENT = 1,
+    /**
+     * The handle was made on another thread.
+     */
+    VARIKERNEL_STATUS_WRONG_THREAD = 2,
+    /**
+     * No OpenGL context is current on this thread.
+     */
+    VARIKERNEL_STATUS_NO_CONTEXT = 3,
+    /**
+     * The context is older than OpenGL 3.3 core.
+     */
+    VARIKERNEL_STATUS_VERSION = 4,
+    /**
+     * A setting is outside its range; the text names it.
+     */
+    VARIKERNEL_STATUS_SETTING = 5,
+    /**
+     * A map is larger than the device's textures.
+     */
+    VARIKERNEL_STATUS_TOO_LARGE = 6,
+    /**
+     * A texture does not fit: another target, format or size; a mask that is missing or not expected.
+     */
+    VARIKERNEL_STATUS_MISMATCH = 7,
+    /**
+     * The radii could be wrong, since sums might wrap; nothing was drawn. The text says what would be exact.
+     */
+    VARIKERNEL_STATUS_INEXACT = 8,
+    /**
+     * The driver refused a shader; the text has its log.
+     */
+    VARIKERNEL_STATUS_SHADER = 9,
+    /**
+     * GL_OUT_OF_MEMORY.
+     */
+    VARIKERNEL_STATUS_OUT_OF_MEMORY = 10,
+    /**
+     * GL_CONTEXT_LOST: destroy the handles, and make all anew in a new context.
+     */
+    VARIKERNEL_STATUS_CONTEXT_LOST = 11,
+    /**
+     * Another GL error; the text names it.
+     */
+    VARIKERNEL_STATUS_OPEN_GL = 12,
+    /**
+     * A mistake of the library, reported on stderr as well. A pipeline is of no more use then; destroy it.
+     */
+    VARIKERNEL_STATUS_INTERNAL = 13,
+} varikernel_status;
+
+/**
+ * An OpenGL context of the host: its commands, and what pipelines share.
+ */
+typedef struct varikernel_context varikernel_context;
+
+/**
+ * Density map in, radius map out, for one size and one set of settings.
+ */
+typedef struct varikernel_pipeline varikernel_pipeline;
+
+/**
+ * Finds an OpenGL command by name in the context that is current: eglGetProcAddress, glfwGetProcAddress,
+ * SDL_GL_GetProcAddress, wglGetProcAddress with its fallback. Null where there is no such command. `user` is passed on.
+ *
+ * It must not throw, and is called by varikernel_context_create alone.
+ */
+typedef void *(*varikernel_loader)(const char *name, void *user);
+
+/**
+ * What is asked of a pipeline. Fill it with varikernel_settings_default, then change what you like.
+ *
+ * Boxes are counted in a summed-area table, exact or refused. The order of the search changes no radius.
+ */
+typedef struct varikernel_settings {
+    /**
+     * sizeof(varikernel_settings), by which another version's struct is told.
+     */
+    uint32_t struct_size;
+    /**
+     * n: photons that a box has to hold, at least 1. Default 25.
+     */
+    uint32_t min_photons;
+    /**
+     * MR: where the search ends, in pixels, 1 to 32767. Pixels that find too few photons get it. Default 32.
+     */
+    uint32_t max_radius;
+    /**
+     * What a box holds outside the map: VARIKERNEL_EDGES_... Default VARIKERNEL_EDGES_SCALE.
+     */
+    uint32_t edges;
+    /**
+     * In which order radii are tried: VARIKERNEL_ORDER_... Default VARIKERNEL_ORDER_BRACKETED.
+     */
+    uint32_t order;
+    /**
+     * 1 for a texture that marks the pixels that found too few photons within MR, else 0. Default 0.
+     */
+    uint32_t limited_mask;
+    /**
+     * 1 if each frame brings a mask of the pixels that need a radius, else 0. Default 0.
+     */
+    uint32_t masked;
+} varikernel_settings;
+
+/**
+ * One frame. Fill it with varikernel_frame_default, then say what you know.
+ */
+typedef struct varikernel_frame {
+    /**
+     * sizeof(varikernel_frame), by which another version's struct is told.
+     */
+    uint32_t struct_size;
+    /**
+     * Photons per pixel: a GL_TEXTURE_2D in the pipeline's format and size, whole numbers that are not negative. It stays
+     * the host's and is only read.
+     */
+    uint32_t density_texture;
+    /**
+     * No more photons than these are in the map: how many were drawn. 0 leaves the counting out. Default
+     * VARIKERNEL_PHOTONS_UNKNOWN, with which a frame is refused unless n and MR alone prove it exact.
+     */
+    uint64_t photons_at_most;
+    /**
+     * For a pipeline with masks: a GL_R8UI, GL_R16UI or GL_R32UI texture of the map's size, 0 where no radius is needed;
+     * such pixels get radius 0. Else 0. Default 0.
+     */
+    uint32_t mask_texture;
+    /**
+     * What differs from the frame before: VARIKERNEL_CHANGED_... Default VARIKERNEL_CHANGED_EVERYTHING.
+     */
+    uint32_t changed;
+    /**
+     * First column of the changed rectangle.
+     */
+    uint32_t changed_x;
+    /**
+     * First row of the changed rectangle, as OpenGL counts them.
+     */
+    uint32_t changed_y;
+    /**
+     * Columns of the changed rectangle.
+     */
+    uint32_t changed_width;
+    /**
+     * Rows of the changed rectangle.
+     */
+    uint32_t changed_height;
+} varikernel_frame;
+
+#ifdef __cplusplus
+extern "C" {
+#endif // __cplusplus
+
+/**
+ * The version of the library that was loaded, such as "0.1.0"; never null, valid for ever.
+ */
+const char *varikernel_version(void);
+
+/**
+ * Whether the loaded library is what a header of this version describes.
+ *
+ * Call it with VARIKERNEL_VERSION_MAJOR and VARIKERNEL_VERSION_MINOR before anything else. Before version 1.0 both have
+ * to be the library's own.
+ */
+bool varikernel_is_compatible(uint32_t major,
+                              uint32_t minor);
+
+/**
+ * What went wrong in the last call on this thread that failed: what, where, and what to do; "" if none did.
+ *
+ * Never null, UTF-8, one or several lines. Valid until the next failing call on this thread.
+ */
+const char *varikernel_last_error(void);
+
+/**
+ * Takes the OpenGL context that is current on this thread, 3.3 core or newer; no extension is needed.
+ *
+ * `*context` is the host's to destroy. `user` may be null and is not used later.
+ *
+ * Fails with NO_CONTEXT, VERSION, INVALID_ARGUMENT.
+ */
+enum varikernel_status varikernel_context_create(varikernel_loader loader,
+                                                 void *user,
+                                                 struct varikernel_context **context);
+
+/**
+ * Frees a context; null is fine. Pipelines made in it stay usable: the last of them frees what they share.
+ *
+ * Fails with WRONG_THREAD and NO_CONTEXT, and frees nothing then. Destroy before the OpenGL context goes: after it, the
+ * handle's few kilobytes stay behind.
+ */
+enum varikernel_status varikernel_context_destroy(struct varikernel_context *context);
+
+/**
+ * Fills `settings` with the defaults. `size` is sizeof(varikernel_settings).
+ *
+ * Fails with INVALID_ARGUMENT.
+ */
+enum varikernel_status varikernel_settings_default(struct varikernel_settings *settings,
+                                                   uint32_t size);
+
+/**
+ * Allocates and compiles for density maps of `width` x `height` pixels in `density_format`: GL_R32F, as additive blending
+ * of points fills it, GL_R32UI, GL_R16UI or GL_R8UI. Takes milliseconds to seconds; frames only draw.
+ *
+ * `*pipeline` is the host's to destroy, before or after `context`. `settings` may be null for the defaults.
+ *
+ * Fails with SETTING, TOO_LARGE, MISMATCH for another format, SHADER, OUT_OF_MEMORY, OPEN_GL, INVALID_ARGUMENT,
+ * WRONG_THREAD, NO_CONTEXT.
+ */
+enum varikernel_status varikernel_pipeline_create(const struct varikernel_context *context,
+                                                  uint32_t width,
+                                                  uint32_t height,
+                                                  uint32_t density_format,
+                                                  const struct varikernel_settings *settings,
+                                                  struct varikernel_pipeline **pipeline);
+
+/**
+ * Finds the radii of a frame: draws only, reads nothing back, waits for nothing.
+ *
+ * `*radius_texture` is a GL_TEXTURE_2D in GL_R32UI, a usampler2D in your shaders: radii from 1 to MR in pixels, 0 where
+ * the mask says that none is needed. `*limited_texture` is one in GL_R8UI that is 1 where MR ended the search with too few
+ * photons, or 0 if the settings ask for none; the pointer may be null. Both belong to the pipeline, are complete without
+ * a sampler, and hold until its next frame. Take the names anew each frame: textures may take turns.
+ *
+ * Fails with MISMATCH, INEXACT, SETTING, OUT_OF_MEMORY, CONTEXT_LOST, OPEN_GL, INVALID_ARGUMENT, WRONG_THREAD,
+ * NO_CONTEXT; the next frame may succeed.
+ */
+enum varikernel_status varikernel_render(struct varikernel_pipeline *pipeline,
+                                         const struct varikernel_frame *frame,
+                                         uint32_t *radius_texture,
+                                         uint32_t *limited_texture);
+
+/**
+ * Frees a pipeline with its textures; null is fine.
+ *
+ * Fails with WRONG_THREAD and NO_CONTEXT, and frees nothing then. Destroy before the OpenGL context goes: after it, the
+ * handle's few kilobytes stay behind.
+ */
+enum varikernel_status varikernel_pipeline_destroy(struct varikernel_pipeline *pipeline);
+
+/**
+ * Fills `frame` with the defaults, without a texture. `size` is sizeof(varikernel_frame).
+ *
+ * Fails with INVALID_ARGUMENT.
+ */
+enum varikernel_status varikernel_frame_default(struct varikernel_frame *frame, uint32_t size);
+
+#ifdef __cplusplus
+}  // extern "C"
+#endif  // __cplusplus
+
+#endif  /* VARIKERNEL_H */

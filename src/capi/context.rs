@@ -1,0 +1,96 @@
+//! The host's OpenGL context, taken through a loader.
+
+use std::ffi::{CStr, c_char, c_void};
+use std::thread::{self, ThreadId};
+
+use super::{Failure, Status, answer, check_place, given};
+use crate::error::Error;
+use crate::gl::Gl;
+
+/// Finds an OpenGL command by name in the context that is current: eglGetProcAddress, glfwGetProcAddress,
+/// SDL_GL_GetProcAddress, wglGetProcAddress with its fallback. Null where there is no such command. `user` is passed on.
+///
+/// It must not throw, and is called by varikernel_context_create alone.
+pub type Loader = Option<unsafe extern "C" fn(name: *const c_char, user: *mut c_void) -> *mut c_void>;
+
+/// An OpenGL context of the host: its commands, and what pipelines share.
+pub struct Context {
+    pub(super) home: Home,
+    pub(super) gl: Gl,
+}
+
+type GetString = unsafe extern "system" fn(name: u32) -> *const u8;
+
+/// Where handles may be used.
+#[derive(Clone, Copy)]
+pub(super) struct Home {
+    thread: ThreadId,
+    get_string: GetString,
+}
+
+impl Home {
+    /// Whether this is the thread, and a context is current on it.
+    pub(super) fn check(&self) -> Result<(), Failure> {
+        if thread::current().id() != self.thread {
+            let text = "the handle belongs to the thread that made it, and this is another";
+            return Err(Failure::new(Status::WrongThread, text));
+        }
+        // SAFETY: glGetString takes any value; without a context it returns null.
+        if unsafe { (self.get_string)(glow::VERSION) }.is_null() {
+            let text = "no OpenGL context is current on this thread\nhelp: make the one current that the handle was \
+                        made in";
+            return Err(Failure::new(Status::NoContext, text));
+        }
+        Ok(())
+    }
+}
+
+/// Takes the OpenGL context that is current on this thread, 3.3 core or newer; no extension is needed.
+///
+/// `*context` is the host's to destroy. `user` may be null and is not used later.
+///
+/// Fails with NO_CONTEXT, VERSION, INVALID_ARGUMENT.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn varikernel_context_create(
+    loader: Loader,
+    user: *mut c_void,
+    context: *mut *mut Context,
+) -> Status {
+    answer(|| {
+        check_place(context, "context")?;
+        let loader = loader.ok_or_else(|| super::null("loader"))?;
+        // SAFETY: the host's loader takes a name and what the host gave with it.
+        let load = |name: &CStr| unsafe { loader(name.as_ptr(), user) }.cast_const();
+        let get_string = load(c"glGetString");
+        if get_string.is_null() {
+            return Err(Error::NoContext("the loader does not know glGetString".to_owned()).into());
+        }
+        // SAFETY: the host vouches that this is the address of glGetString, which has this type.
+        let get_string = unsafe { std::mem::transmute::<*const c_void, GetString>(get_string) };
+        let home = Home { thread: thread::current().id(), get_string };
+        home.check()?;
+        // SAFETY: a context is current, and `Home::check` asks before each use whether one is.
+        let gl = unsafe { Gl::from_loader(load) }?;
+        // SAFETY: the host gives a pointer to write to.
+        unsafe { context.write(Box::into_raw(Box::new(Context { home, gl }))) };
+        Ok(())
+    })
+}
+
+/// Frees a context; null is fine. Pipelines made in it stay usable: the last of them frees what they share.
+///
+/// Fails with WRONG_THREAD and NO_CONTEXT, and frees nothing then. Destroy before the OpenGL context goes: after it, the
+/// handle's few kilobytes stay behind.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn varikernel_context_destroy(context: *mut Context) -> Status {
+    answer(|| {
+        if context.is_null() {
+            return Ok(());
+        }
+        // SAFETY: the host gives a handle that was not destroyed.
+        unsafe { given(context, "context") }?.home.check()?;
+        // SAFETY: as above, and `varikernel_context_create` made it of a box.
+        drop(unsafe { Box::from_raw(context) });
+        Ok(())
+    })
+}

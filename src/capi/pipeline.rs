@@ -1,0 +1,160 @@
+//! Density texture in, radius texture out.
+
+use std::cell::Cell;
+
+use glam::UVec2;
+
+use super::{Context, Failure, Home, PlainFrame, PlainSettings, Status, answer, check_place, given};
+use crate::adaptive::AdaptivePipeline;
+use crate::error::Error;
+use crate::frame::Frame;
+use crate::gl::{Gl, TextureFormat};
+use crate::maps::RadiusMap;
+use crate::pipeline::RadiusPipeline;
+
+/// Density map in, radius map out, for one size and one set of settings.
+pub struct Pipeline {
+    home: Home,
+    gl: Gl,
+    /// Taken while a call works with it, so that what a panic leaves half done is not there for the next.
+    stages: Cell<Option<Stages>>,
+}
+
+enum Stages {
+    /// One order, for ever.
+    Fixed(Box<RadiusPipeline>),
+    /// An order for each frame.
+    Adaptive(Box<AdaptivePipeline>),
+}
+
+impl Stages {
+    fn update(&mut self, frame: &Frame<'_>) -> Result<&RadiusMap, Error> {
+        match self {
+            Self::Fixed(pipeline) => pipeline.update(frame),
+            Self::Adaptive(pipeline) => pipeline.update(frame),
+        }
+    }
+}
+
+impl Pipeline {
+    /// Works with the stages, on their thread and with a context.
+    fn with<T>(&self, work: impl FnOnce(&mut Stages) -> Result<T, Failure>) -> Result<T, Failure> {
+        self.home.check()?;
+        let mut stages = self.stages.take().ok_or_else(|| {
+            Failure::new(Status::Internal, "the pipeline broke in an earlier call\nhelp: destroy it")
+        })?;
+        let outcome = work(&mut stages);
+        self.stages.set(Some(stages));
+        outcome
+    }
+}
+
+/// Allocates and compiles for density maps of `width` x `height` pixels in `density_format`: GL_R32F, as additive blending
+/// of points fills it, GL_R32UI, GL_R16UI or GL_R8UI. Takes milliseconds to seconds; frames only draw.
+///
+/// `*pipeline` is the host's to destroy, before or after `context`. `settings` may be null for the defaults.
+///
+/// Fails with SETTING, TOO_LARGE, MISMATCH for another format, SHADER, OUT_OF_MEMORY, OPEN_GL, INVALID_ARGUMENT,
+/// WRONG_THREAD, NO_CONTEXT.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn varikernel_pipeline_create(
+    context: *const Context,
+    width: u32,
+    height: u32,
+    density_format: u32,
+    settings: *const PlainSettings,
+    pipeline: *mut *mut Pipeline,
+) -> Status {
+    answer(|| {
+        check_place(pipeline, "pipeline")?;
+        // SAFETY: the host gives a handle that was not destroyed, or null.
+        let context = unsafe { given(context, "context") }?;
+        context.home.check()?;
+        // SAFETY: the host gives settings or null.
+        let settings = unsafe { settings.as_ref() }.map(PlainSettings::read).transpose()?;
+        let (settings, is_adaptive) = settings.unwrap_or_default();
+        let (gl, size, format) = (&context.gl, UVec2::new(width, height), read_format(density_format)?);
+        let stages = if is_adaptive {
+            Stages::Adaptive(Box::new(AdaptivePipeline::new(gl, size, format, settings)?))
+        } else {
+            Stages::Fixed(Box::new(RadiusPipeline::new(gl, size, format, settings)?))
+        };
+        let made = Pipeline { home: context.home, gl: gl.clone(), stages: Cell::new(Some(stages)) };
+        // SAFETY: the host gives a pointer to write to.
+        unsafe { pipeline.write(Box::into_raw(Box::new(made))) };
+        Ok(())
+    })
+}
+
+/// Finds the radii of a frame: draws only, reads nothing back, waits for nothing.
+///
+/// `*radius_texture` is a GL_TEXTURE_2D in GL_R32UI, a usampler2D in your shaders: radii from 1 to MR in pixels, 0 where
+/// the mask says that none is needed. `*limited_texture` is one in GL_R8UI that is 1 where MR ended the search with too few
+/// photons, or 0 if the settings ask for none; the pointer may be null. Both belong to the pipeline, are complete without
+/// a sampler, and hold until its next frame. Take the names anew each frame: textures may take turns.
+///
+/// Fails with MISMATCH, INEXACT, SETTING, OUT_OF_MEMORY, CONTEXT_LOST, OPEN_GL, INVALID_ARGUMENT, WRONG_THREAD,
+/// NO_CONTEXT; the next frame may succeed.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn varikernel_render(
+    pipeline: *mut Pipeline,
+    frame: *const PlainFrame,
+    radius_texture: *mut u32,
+    limited_texture: *mut u32,
+) -> Status {
+    answer(|| {
+        // SAFETY: the host gives a handle that was not destroyed, or null.
+        let pipeline = unsafe { given(pipeline, "pipeline") }?;
+        // SAFETY: the host gives a frame or null.
+        let frame = unsafe { given(frame, "frame") }?;
+        check_place(radius_texture, "radius_texture")?;
+        let (radius, limited) = pipeline.with(|stages| {
+            let (density, mask) = frame.borrow(&pipeline.gl)?;
+            let changed = frame.read_changed()?;
+            let radii = stages.update(&Frame { density: &density, mask: mask.as_ref(), changed })?;
+            Ok((radii.texture(), radii.limited_texture()))
+        })?;
+        if !limited_texture.is_null() {
+            let name = limited.map_or(0, |limited| limited.0.get());
+            // SAFETY: the host gives a pointer to write to, or null.
+            unsafe { limited_texture.write(name) };
+        }
+        // SAFETY: the host gives a pointer to write to.
+        unsafe { radius_texture.write(radius.0.get()) };
+        Ok(())
+    })
+}
+
+/// Frees a pipeline with its textures; null is fine.
+///
+/// Fails with WRONG_THREAD and NO_CONTEXT, and frees nothing then. Destroy before the OpenGL context goes: after it, the
+/// handle's few kilobytes stay behind.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn varikernel_pipeline_destroy(pipeline: *mut Pipeline) -> Status {
+    answer(|| {
+        if pipeline.is_null() {
+            return Ok(());
+        }
+        // SAFETY: the host gives a handle that was not destroyed.
+        unsafe { given(pipeline, "pipeline") }?.home.check()?;
+        // SAFETY: as above, and `varikernel_pipeline_create` made it of a box.
+        drop(unsafe { Box::from_raw(pipeline) });
+        Ok(())
+    })
+}
+
+/// A format by the value of its GL enum.
+fn read_format(value: u32) -> Result<TextureFormat, Failure> {
+    match value {
+        glow::R32F => Ok(TextureFormat::R32Float),
+        glow::R32UI => Ok(TextureFormat::R32Uint),
+        glow::R16UI => Ok(TextureFormat::R16Uint),
+        glow::R8UI => Ok(TextureFormat::R8Uint),
+        other => Err(Error::Mismatch {
+            what: "density_format",
+            expected: "GL_R32F, GL_R32UI, GL_R16UI or GL_R8UI".to_owned(),
+            got: format!("{other:#06x}"),
+        }
+        .into()),
+    }
+}
