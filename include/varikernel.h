@@ -95,7 +95,7 @@
 /**
  * How a call ended.
  */
-typedef enum varikernel_status {
+typedef enum {
     /**
      * All went well.
      */
@@ -177,7 +177,7 @@ typedef void *(*varikernel_loader)(const char *name, void *user);
  *
  * Boxes are counted in a summed-area table, exact or refused. The order of the search changes no radius.
  */
-typedef struct varikernel_settings {
+typedef struct {
     /**
      * sizeof(varikernel_settings), by which another version's struct is told.
      */
@@ -211,7 +211,7 @@ typedef struct varikernel_settings {
 /**
  * One frame. Fill it with varikernel_frame_default, then say what you know.
  */
-typedef struct varikernel_frame {
+typedef struct {
     /**
      * sizeof(varikernel_frame), by which another version's struct is told.
      */
@@ -285,9 +285,9 @@ const char *varikernel_last_error(void);
  *
  * Fails with NO_CONTEXT, VERSION, INVALID_ARGUMENT.
  */
-enum varikernel_status varikernel_context_create(varikernel_loader loader,
-                                                 void *user,
-                                                 struct varikernel_context **context);
+varikernel_status varikernel_context_create(varikernel_loader loader,
+                                            void *user,
+                                            varikernel_context **context);
 
 /**
  * Frees a context; null is fine. Pipelines made in it stay usable: the last of them frees what they share.
@@ -295,15 +295,21 @@ enum varikernel_status varikernel_context_create(varikernel_loader loader,
  * Fails with WRONG_THREAD and NO_CONTEXT, and frees nothing then. Destroy before the OpenGL context goes: after it, the
  * handle's few kilobytes stay behind.
  */
-enum varikernel_status varikernel_context_destroy(struct varikernel_context *context);
+varikernel_status varikernel_context_destroy(varikernel_context *context);
 
 /**
  * Fills `settings` with the defaults. `size` is sizeof(varikernel_settings).
  *
  * Fails with INVALID_ARGUMENT.
  */
-enum varikernel_status varikernel_settings_default(struct varikernel_settings *settings,
-                                                   uint32_t size);
+varikernel_status varikernel_settings_default(varikernel_settings *settings, uint32_t size);
+
+/**
+ * Fills `frame` with the defaults, without a texture. `size` is sizeof(varikernel_frame).
+ *
+ * Fails with INVALID_ARGUMENT.
+ */
+varikernel_status varikernel_frame_default(varikernel_frame *frame, uint32_t size);
 
 /**
  * Allocates and compiles for density maps of `width` x `height` pixels in `density_format`: GL_R32F, as additive blending
@@ -314,12 +320,12 @@ enum varikernel_status varikernel_settings_default(struct varikernel_settings *s
  * Fails with SETTING, TOO_LARGE, MISMATCH for another format, SHADER, OUT_OF_MEMORY, OPEN_GL, INVALID_ARGUMENT,
  * WRONG_THREAD, NO_CONTEXT.
  */
-enum varikernel_status varikernel_pipeline_create(const struct varikernel_context *context,
-                                                  uint32_t width,
-                                                  uint32_t height,
-                                                  uint32_t density_format,
-                                                  const struct varikernel_settings *settings,
-                                                  struct varikernel_pipeline **pipeline);
+varikernel_status varikernel_pipeline_create(const varikernel_context *context,
+                                             uint32_t width,
+                                             uint32_t height,
+                                             uint32_t density_format,
+                                             const varikernel_settings *settings,
+                                             varikernel_pipeline **pipeline);
 
 /**
  * Finds the radii of a frame: draws only, reads nothing back, waits for nothing.
@@ -332,10 +338,20 @@ enum varikernel_status varikernel_pipeline_create(const struct varikernel_contex
  * Fails with MISMATCH, INEXACT, SETTING, OUT_OF_MEMORY, CONTEXT_LOST, OPEN_GL, INVALID_ARGUMENT, WRONG_THREAD,
  * NO_CONTEXT; the next frame may succeed.
  */
-enum varikernel_status varikernel_render(struct varikernel_pipeline *pipeline,
-                                         const struct varikernel_frame *frame,
-                                         uint32_t *radius_texture,
-                                         uint32_t *limited_texture);
+varikernel_status varikernel_render(varikernel_pipeline *pipeline,
+                                    const varikernel_frame *frame,
+                                    uint32_t *radius_texture,
+                                    uint32_t *limited_texture);
+
+/**
+ * From now on for density maps of another size, with the same format and settings; the next frame starts from nothing.
+ * Textures of earlier frames are gone.
+ *
+ * Fails as varikernel_pipeline_create, and the pipeline then goes on at its old size.
+ */
+varikernel_status varikernel_pipeline_resize(varikernel_pipeline *pipeline,
+                                             uint32_t width,
+                                             uint32_t height);
 
 /**
  * Frees a pipeline with its textures; null is fine.
@@ -343,14 +359,7 @@ enum varikernel_status varikernel_render(struct varikernel_pipeline *pipeline,
  * Fails with WRONG_THREAD and NO_CONTEXT, and frees nothing then. Destroy before the OpenGL context goes: after it, the
  * handle's few kilobytes stay behind.
  */
-enum varikernel_status varikernel_pipeline_destroy(struct varikernel_pipeline *pipeline);
-
-/**
- * Fills `frame` with the defaults, without a texture. `size` is sizeof(varikernel_frame).
- *
- * Fails with INVALID_ARGUMENT.
- */
-enum varikernel_status varikernel_frame_default(struct varikernel_frame *frame, uint32_t size);
+varikernel_status varikernel_pipeline_destroy(varikernel_pipeline *pipeline);
 
 #ifdef __cplusplus
 }  // extern "C"

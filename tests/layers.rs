@@ -122,7 +122,9 @@ fn room(file: &Path) -> String {
 
 /// Whether a text without comments has unsafe code.
 fn is_unsafe(code: &str) -> bool {
-    ["unsafe {", "unsafe fn", "unsafe impl", "unsafe extern", "#[unsafe("].iter().any(|form| code.contains(form))
+    ["unsafe {", "unsafe fn", "unsafe impl", "unsafe extern", "#[unsafe("]
+        .iter()
+        .any(|form| code.contains(form))
 }
 
 /// The text without comments, so that documentation may name any room.
@@ -196,8 +198,13 @@ fn unsafe_code_stands_in_three_rooms_alone() {
 
 #[test]
 fn unsafe_code_is_seen_in_each_form() {
-    let forms =
-        ["unsafe { f() }", "unsafe fn f()", "unsafe impl T", "pub unsafe extern \"C\" fn f()", "#[unsafe(no_mangle)]"];
+    let forms = [
+        "unsafe { f() }",
+        "unsafe fn f()",
+        "unsafe impl T",
+        "pub unsafe extern \"C\" fn f()",
+        "#[unsafe(no_mangle)]",
+    ];
     assert!(forms.into_iter().all(is_unsafe));
     assert!(!is_unsafe("#![expect(unsafe_code)] let is_unsafe = true;"));
 }

@@ -11,11 +11,14 @@ use crate::frame::Frame;
 use crate::gl::{Gl, TextureFormat};
 use crate::maps::RadiusMap;
 use crate::pipeline::RadiusPipeline;
+use crate::settings::Settings;
 
 /// Density map in, radius map out, for one size and one set of settings.
 pub struct Pipeline {
     home: Home,
     gl: Gl,
+    format: TextureFormat,
+    settings: (Settings, bool),
     /// Taken while a call works with it, so that what a panic leaves half done is not there for the next.
     stages: Cell<Option<Stages>>,
 }
@@ -28,6 +31,19 @@ enum Stages {
 }
 
 impl Stages {
+    fn new(
+        gl: &Gl,
+        size: UVec2,
+        format: TextureFormat,
+        (settings, is_adaptive): (Settings, bool),
+    ) -> Result<Self, Error> {
+        Ok(if is_adaptive {
+            Self::Adaptive(Box::new(AdaptivePipeline::new(gl, size, format, settings)?))
+        } else {
+            Self::Fixed(Box::new(RadiusPipeline::new(gl, size, format, settings)?))
+        })
+    }
+
     fn update(&mut self, frame: &Frame<'_>) -> Result<&RadiusMap, Error> {
         match self {
             Self::Fixed(pipeline) => pipeline.update(frame),
@@ -71,15 +87,11 @@ pub unsafe extern "C" fn varikernel_pipeline_create(
         let context = unsafe { given(context, "context") }?;
         context.home.check()?;
         // SAFETY: the host gives settings or null.
-        let settings = unsafe { settings.as_ref() }.map(PlainSettings::read).transpose()?;
-        let (settings, is_adaptive) = settings.unwrap_or_default();
-        let (gl, size, format) = (&context.gl, UVec2::new(width, height), read_format(density_format)?);
-        let stages = if is_adaptive {
-            Stages::Adaptive(Box::new(AdaptivePipeline::new(gl, size, format, settings)?))
-        } else {
-            Stages::Fixed(Box::new(RadiusPipeline::new(gl, size, format, settings)?))
-        };
-        let made = Pipeline { home: context.home, gl: gl.clone(), stages: Cell::new(Some(stages)) };
+        let settings = unsafe { settings.as_ref() }.map(PlainSettings::read).transpose()?.unwrap_or_default();
+        let format = read_format(density_format)?;
+        let stages = Stages::new(&context.gl, UVec2::new(width, height), format, settings)?;
+        let (home, gl, stages) = (context.home, context.gl.clone(), Cell::new(Some(stages)));
+        let made = Pipeline { home, gl, format, settings, stages };
         // SAFETY: the host gives a pointer to write to.
         unsafe { pipeline.write(Box::into_raw(Box::new(made))) };
         Ok(())
@@ -122,6 +134,27 @@ pub unsafe extern "C" fn varikernel_render(
         // SAFETY: the host gives a pointer to write to.
         unsafe { radius_texture.write(radius.0.get()) };
         Ok(())
+    })
+}
+
+/// From now on for density maps of another size, with the same format and settings; the next frame starts from nothing.
+/// Textures of earlier frames are gone.
+///
+/// Fails as varikernel_pipeline_create, and the pipeline then goes on at its old size.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn varikernel_pipeline_resize(
+    pipeline: *mut Pipeline,
+    width: u32,
+    height: u32,
+) -> Status {
+    answer(|| {
+        // SAFETY: the host gives a handle that was not destroyed, or null.
+        let pipeline = unsafe { given(pipeline, "pipeline") }?;
+        pipeline.with(|stages| {
+            *stages =
+                Stages::new(&pipeline.gl, UVec2::new(width, height), pipeline.format, pipeline.settings)?;
+            Ok(())
+        })
     })
 }
 

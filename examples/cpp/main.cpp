@@ -1,0 +1,162 @@
+// An engine with varikernel in its frame, in ten steps. It splats photons as points, has their radii found, reads them
+// in a shader of its own, and checks each one against plain loops. Exit code 0 if all of it is right.
+#include <algorithm>
+#include <cstdint>
+#include <random>
+
+#include "engine.hpp"
+#include "headless.h"
+#include "varikernel.h"
+
+namespace {
+
+constexpr int photons_drawn = 20000;
+
+void check(varikernel_status status, const char *what) {
+    require(status == VARIKERNEL_STATUS_OK, what + std::string(": ") + varikernel_last_error());
+}
+
+// Photons as points that add 1 to their pixel: a caustic in the middle of a dim floor.
+void draw_photons(const Target &density, GLuint points) {
+    density.begin();
+    glClear(GL_COLOR_BUFFER_BIT);
+    glUseProgram(points);
+    glEnable(GL_BLEND);
+    glBlendFunc(GL_ONE, GL_ONE);
+    glDrawArrays(GL_POINTS, 0, photons_drawn);
+    glDisable(GL_BLEND);
+}
+
+// The definition: the smallest radius whose box holds n photons, scaled by the box's area inside the map.
+uint32_t definition(const std::vector<float> &density, int width, int height, int x, int y,
+                    const varikernel_settings &asked) {
+    for (int radius = 1; radius < static_cast<int>(asked.max_radius); radius++) {
+        uint64_t held = 0, inside = 0;
+        for (int v = std::max(y - radius, 0); v <= std::min(y + radius, height - 1); v++)
+            for (int u = std::max(x - radius, 0); u <= std::min(x + radius, width - 1); u++, inside++)
+                held += static_cast<uint64_t>(density[v * width + u]);
+        const uint64_t area = (2 * radius + 1) * (2 * radius + 1);
+        if (held * area >= asked.min_photons * inside) return radius;
+    }
+    return asked.max_radius;
+}
+
+// What the engine had set before a call, and finds set after it.
+std::vector<GLint> state() {
+    std::vector<GLint> values;
+    for (GLenum name : {GL_CURRENT_PROGRAM, GL_VERTEX_ARRAY_BINDING, GL_DRAW_FRAMEBUFFER_BINDING, GL_BLEND, GL_BLEND_SRC_RGB,
+                        GL_READ_FRAMEBUFFER_BINDING, GL_ACTIVE_TEXTURE, GL_TEXTURE_BINDING_2D, GL_UNPACK_ALIGNMENT})
+        glGetIntegerv(name, &values.emplace_back());
+    values.resize(values.size() + 4);
+    glGetIntegerv(GL_VIEWPORT, &values[values.size() - 4]);
+    return values;
+}
+
+// One frame of the engine at one size, and its check.
+void frame(varikernel_pipeline *pipeline, const varikernel_settings &asked, GLuint points, GLuint splat, int width, int height) {
+    // Step 7: a density texture of yours, photons per pixel; you know how many you have drawn.
+    const Target density(width, height);
+    draw_photons(density, points);
+    varikernel_frame brought;
+    check(varikernel_frame_default(&brought, sizeof brought), "a frame's defaults");
+    brought.density_texture = density.texture;
+    brought.photons_at_most = photons_drawn;
+
+    // Step 8: render in your frame, between your own passes. Your OpenGL state comes back as it was.
+    glUseProgram(points);
+    glEnable(GL_BLEND);
+    const auto before = state();
+    GLuint radius_texture = 0, limited_texture = 0;
+    check(varikernel_render(pipeline, &brought, &radius_texture, &limited_texture), "rendering radii");
+    require(state() == before, "the OpenGL state is as it was");
+    glDisable(GL_BLEND);
+    require(state() != before, "a change of the OpenGL state is seen");
+
+    // Step 9: bind the radius texture in your shader, a usampler2D.
+    const Target splatted(width, height);
+    glUseProgram(splat);
+    glActiveTexture(GL_TEXTURE0);
+    glBindTexture(GL_TEXTURE_2D, radius_texture);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+
+    const auto counts = density.read(), radii = splatted.read();
+    varikernel_settings other = asked;
+    other.min_photons++;
+    uint64_t wrong = 0, different = 0, sum = 0;
+    for (int y = 0; y < height; y++)
+        for (int x = 0; x < width; x++) {
+            const auto found = static_cast<uint32_t>(radii[y * width + x]);
+            wrong += found != definition(counts, width, height, x, y, asked);
+            different += found != definition(counts, width, height, x, y, other);
+            sum += found;
+        }
+    std::printf("%d x %d: mean radius %.2f, %llu pixels differ from the definition\n", width, height,
+                static_cast<double>(sum) / (width * height), static_cast<unsigned long long>(wrong));
+    require(wrong == 0, "every radius is the definition's");
+    require(different != 0, "one photon more gives other radii");
+}
+
+}  // namespace
+
+int main() {
+    // Step 1: your context is current on this thread, OpenGL 3.3 core or newer.
+    headless host;
+    require(headless_open(&host), "opening a headless OpenGL 3.3 context");
+
+    // Step 2: your loader becomes a handle.
+    varikernel_context *context = nullptr;
+    check(varikernel_context_create(headless_loader, nullptr, &context), "taking the context");
+    std::printf("varikernel %s on %s\n", varikernel_version(), reinterpret_cast<const char *>(glGetString(GL_RENDERER)));
+
+    // Step 3: header and library are of one version.
+    require(varikernel_is_compatible(VARIKERNEL_VERSION_MAJOR, VARIKERNEL_VERSION_MINOR), "one version of header and library");
+
+    // Step 4: settings: the smallest box that holds 20 photons, up to radius 16.
+    varikernel_settings settings;
+    check(varikernel_settings_default(&settings, sizeof settings), "the defaults");
+    settings.min_photons = 20;
+    settings.max_radius = 16;
+
+    // Step 6: a pipeline for a size; all is allocated and compiled here.
+    varikernel_pipeline *pipeline = nullptr;
+    check(varikernel_pipeline_create(context, 160, 120, GL_R32F, &settings, &pipeline), "making a pipeline");
+
+    // The engine's own objects: photons in a vertex buffer, a program that draws them, one that reads radii.
+    std::mt19937 random(1);
+    std::vector<float> places;
+    std::normal_distribution<float> caustic(0.0f, 0.1f);
+    std::uniform_real_distribution<float> floor(-1.0f, 1.0f);
+    for (int i = 0; i < 2 * photons_drawn; i++) places.push_back(i % 4 < 2 ? caustic(random) : floor(random));
+    GLuint vertex_array = 0, buffer = 0;
+    glGenVertexArrays(1, &vertex_array);
+    glBindVertexArray(vertex_array);
+    glGenBuffers(1, &buffer);
+    glBindBuffer(GL_ARRAY_BUFFER, buffer);
+    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(places.size() * sizeof(float)), places.data(), GL_STATIC_DRAW);
+    glVertexAttribPointer(0, 2, GL_FLOAT, GL_FALSE, 0, nullptr);
+    glEnableVertexAttribArray(0);
+    const GLuint points = program(
+        "#version 330 core\nlayout(location = 0) in vec2 place; void main() { gl_Position = vec4(place, 0, 1); }",
+        "#version 330 core\nout float count; void main() { count = 1; }");
+    const GLuint splat = program(
+        "#version 330 core\nvoid main() { gl_Position = vec4(4 * (gl_VertexID & 1) - 1, 2 * (gl_VertexID & 2) - 1, 0, 1); }",
+        "#version 330 core\nuniform usampler2D radii; out float radius;"
+        "void main() { radius = float(texelFetch(radii, ivec2(gl_FragCoord.xy), 0).r); }");
+
+    frame(pipeline, settings, points, splat, 160, 120);
+
+    // What does not fit is a status and a text, and nothing was drawn.
+    varikernel_frame empty;
+    GLuint radius_texture = 0;
+    check(varikernel_frame_default(&empty, sizeof empty), "a frame's defaults");
+    require(varikernel_render(pipeline, &empty, &radius_texture, nullptr) == VARIKERNEL_STATUS_INVALID_ARGUMENT, "an error");
+    std::printf("a frame without a texture: %s\n", varikernel_last_error());
+
+    // Step 10: resize with your window, and tear down while the context is current.
+    check(varikernel_pipeline_resize(pipeline, 97, 61), "resizing");
+    frame(pipeline, settings, points, splat, 97, 61);
+    check(varikernel_pipeline_destroy(pipeline), "destroying the pipeline");
+    check(varikernel_context_destroy(context), "destroying the context's handle");
+    require(glGetError() == GL_NO_ERROR, "no OpenGL error is left");
+    headless_close(&host);
+}
