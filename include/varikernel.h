@@ -93,6 +93,31 @@
 #define VARIKERNEL_CHANGED_ADDED 3
 
 /**
+ * kernel: the same everywhere on the disc.
+ */
+#define VARIKERNEL_KERNEL_BOX 0
+
+/**
+ * kernel: 1 - d, with d the distance from the middle in radii.
+ */
+#define VARIKERNEL_KERNEL_CONE 1
+
+/**
+ * kernel: 1 - d^2.
+ */
+#define VARIKERNEL_KERNEL_EPANECHNIKOV 2
+
+/**
+ * kernel: (1 - d^2)^2.
+ */
+#define VARIKERNEL_KERNEL_SILVERMAN 3
+
+/**
+ * kernel: exp(-4.5 d^2), cut off at three standard deviations.
+ */
+#define VARIKERNEL_KERNEL_GAUSSIAN 4
+
+/**
  * How a call ended.
  */
 typedef enum {
@@ -158,6 +183,11 @@ typedef enum {
  * An OpenGL context of the host: its commands, and what pipelines share.
  */
 typedef struct varikernel_context varikernel_context;
+
+/**
+ * Photons and surfaces in, irradiance out, for one size and one set of settings.
+ */
+typedef struct varikernel_irradiance varikernel_irradiance;
 
 /**
  * Density map in, radius map out, for one size and one set of settings.
@@ -252,6 +282,113 @@ typedef struct {
      */
     uint32_t changed_height;
 } varikernel_frame;
+
+/**
+ * How photons become irradiance. Fill it with varikernel_irradiance_settings_default, then change what you like.
+ */
+typedef struct {
+    /**
+     * sizeof(varikernel_irradiance_settings), by which another version's struct is told.
+     */
+    uint32_t struct_size;
+    /**
+     * 0 for kernels that fit the photons' density, else the radius of all kernels, 1 to 96 pixels. Default 0.
+     */
+    uint32_t fixed_radius;
+    /**
+     * n: photons that a kernel has to hold, at least 1. Default 400.
+     */
+    uint32_t min_photons;
+    /**
+     * MR: the largest radius of a kernel, 1 to 96 pixels. Default 64.
+     */
+    uint32_t max_radius;
+    /**
+     * What a box holds outside the map: VARIKERNEL_EDGES_... Default VARIKERNEL_EDGES_SCALE.
+     */
+    uint32_t edges;
+    /**
+     * How a photon's power falls off to the edge: VARIKERNEL_KERNEL_... Default VARIKERNEL_KERNEL_SILVERMAN.
+     */
+    uint32_t kernel;
+    /**
+     * 1 if the host brings a depth buffer in place of positions, else 0. Default 0.
+     */
+    uint32_t from_depth;
+} varikernel_irradiance_settings;
+
+/**
+ * One frame of photons on surfaces. Fill it with varikernel_irradiance_frame_default, then say what you have.
+ */
+typedef struct {
+    /**
+     * sizeof(varikernel_irradiance_frame), by which another version's struct is told.
+     */
+    uint32_t struct_size;
+    /**
+     * A GL_TEXTURE_2D in GL_RGBA32F: the place that each pixel shows in scene units, and as fourth value its depth along the
+     * view, 0 where nothing is seen. With from_depth, a texture with depth, drawn with the whole depth range.
+     */
+    uint32_t position_texture;
+    /**
+     * A GL_TEXTURE_2D in GL_RGBA32F, GL_RGBA16F, GL_RGB32F or GL_RGB16F: the normal of length 1 towards the camera, and as
+     * fourth value the surface's number from 1 on, negative where photons do not land, 0 where nothing is seen. Without
+     * a fourth value all surfaces are number 1.
+     */
+    uint32_t normal_texture;
+    /**
+     * A vertex buffer of varikernel_photon.
+     */
+    uint32_t photon_buffer;
+    /**
+     * Photons to take from its beginning.
+     */
+    uint32_t photon_count;
+    /**
+     * 1 to add these photons' light to that of the frames before, for the same surfaces and camera: of k such frames, the sum
+     * is k times the light. 0 to forget those. Default 0.
+     */
+    uint32_t added;
+    /**
+     * With from_depth: 1 if the far plane is at 0, else 0. Default 0.
+     */
+    uint32_t depth_reversed;
+    /**
+     * With from_depth: 1 if depth in clip space goes from 0 to 1, as GL_ZERO_TO_ONE of glClipControl, else 0. Default 0.
+     */
+    uint32_t depth_zero_to_one;
+    /**
+     * From scene units to view space, where the camera looks along -z: column by column as for glUniformMatrix4fv. It turns
+     * and moves only.
+     */
+    float view[16];
+    /**
+     * From view space to clip space, column by column: a perspective with square pixels.
+     */
+    float projection[16];
+} varikernel_irradiance_frame;
+
+/**
+ * A photon in a vertex buffer of the host.
+ */
+typedef struct {
+    /**
+     * Where it landed, in scene units.
+     */
+    float position[3];
+    /**
+     * Of the surface, of length 1, on the side from which the photon came.
+     */
+    float normal[3];
+    /**
+     * Linear RGB: its share of the power of all lights.
+     */
+    float power[3];
+    /**
+     * The number of the surface, as normal_texture has it; 1 where surfaces have none.
+     */
+    float surface;
+} varikernel_photon;
 
 #ifdef __cplusplus
 extern "C" {
@@ -360,6 +497,77 @@ varikernel_status varikernel_pipeline_resize(varikernel_pipeline *pipeline,
  * handle's few kilobytes stay behind.
  */
 varikernel_status varikernel_pipeline_destroy(varikernel_pipeline *pipeline);
+
+/**
+ * Fills `settings` with the defaults. `size` is sizeof(varikernel_irradiance_settings).
+ *
+ * Fails with INVALID_ARGUMENT.
+ */
+varikernel_status varikernel_irradiance_settings_default(varikernel_irradiance_settings *settings,
+                                                         uint32_t size);
+
+/**
+ * Fills `frame` with the defaults, without textures, photons and camera. `size` is sizeof(varikernel_irradiance_frame).
+ *
+ * Fails with INVALID_ARGUMENT.
+ */
+varikernel_status varikernel_irradiance_frame_default(varikernel_irradiance_frame *frame,
+                                                      uint32_t size);
+
+/**
+ * Allocates and compiles for surfaces of `width` x `height` pixels. Takes milliseconds to seconds; frames only draw.
+ *
+ * `*irradiance` is the host's to destroy, before or after `context`. `settings` may be null for the defaults. For another
+ * size, destroy it and make another.
+ *
+ * Fails with SETTING, TOO_LARGE, SHADER, OUT_OF_MEMORY, OPEN_GL, INVALID_ARGUMENT, WRONG_THREAD, NO_CONTEXT.
+ */
+varikernel_status varikernel_irradiance_create(const varikernel_context *context,
+                                               uint32_t width,
+                                               uint32_t height,
+                                               const varikernel_irradiance_settings *settings,
+                                               varikernel_irradiance **irradiance);
+
+/**
+ * Finds the light that photons bring to the surfaces: counts them, finds radii, draws a kernel for each.
+ *
+ * `*irradiance_texture` is a GL_TEXTURE_2D in GL_RGBA32F, a sampler2D in your shaders: power per area in scene units,
+ * linear RGB; light that leaves a diffuse surface is albedo / pi of it. `*radius_texture` is as that of
+ * varikernel_render, or 0 for a fixed radius; the pointer may be null. Both belong to the handle and hold until its next
+ * frame.
+ *
+ * Waits for the GPU only where a pixel may hold 2^24 photons.
+ *
+ * Fails with MISMATCH, INEXACT, SETTING, OUT_OF_MEMORY, CONTEXT_LOST, OPEN_GL, INVALID_ARGUMENT, WRONG_THREAD,
+ * NO_CONTEXT; the next frame may succeed.
+ */
+varikernel_status varikernel_irradiance_render(varikernel_irradiance *irradiance,
+                                               const varikernel_irradiance_frame *frame,
+                                               uint32_t *irradiance_texture,
+                                               uint32_t *radius_texture);
+
+/**
+ * Frees the handle with its textures; null is fine. As varikernel_pipeline_destroy.
+ *
+ * Fails with WRONG_THREAD and NO_CONTEXT, and frees nothing then.
+ */
+varikernel_status varikernel_irradiance_destroy(varikernel_irradiance *irradiance);
+
+/**
+ * Fills `frame` with the defaults, without textures, photons and camera. `size` is sizeof(varikernel_irradiance_frame).
+ *
+ * Fails with INVALID_ARGUMENT.
+ */
+varikernel_status varikernel_irradiance_frame_default(varikernel_irradiance_frame *frame,
+                                                      uint32_t size);
+
+/**
+ * Fills `settings` with the defaults. `size` is sizeof(varikernel_irradiance_settings).
+ *
+ * Fails with INVALID_ARGUMENT.
+ */
+varikernel_status varikernel_irradiance_settings_default(varikernel_irradiance_settings *settings,
+                                                         uint32_t size);
 
 #ifdef __cplusplus
 }  // extern "C"

@@ -3,7 +3,7 @@
 use std::ffi::{CStr, c_char, c_void};
 use std::thread::{self, ThreadId};
 
-use super::{Failure, Status, answer, check_place, given};
+use super::{Failure, Status, answer, check_place, destroy};
 use crate::error::Error;
 use crate::gl::Gl;
 
@@ -83,14 +83,6 @@ pub unsafe extern "C" fn varikernel_context_create(
 /// handle's few kilobytes stay behind.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn varikernel_context_destroy(context: *mut Context) -> Status {
-    answer(|| {
-        if context.is_null() {
-            return Ok(());
-        }
-        // SAFETY: the host gives a handle that was not destroyed.
-        unsafe { given(context, "context") }?.home.check()?;
-        // SAFETY: as above, and `varikernel_context_create` made it of a box.
-        drop(unsafe { Box::from_raw(context) });
-        Ok(())
-    })
+    // SAFETY: the host gives a handle that `varikernel_context_create` made and that was not destroyed, or null.
+    unsafe { destroy(context, |context| &context.home) }
 }

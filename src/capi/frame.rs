@@ -105,6 +105,7 @@ impl PlainFrame {
     }
 }
 
-fn texture(name: u32) -> Option<glow::Texture> {
+/// A texture's name, nothing for 0.
+pub(super) fn texture(name: u32) -> Option<glow::Texture> {
     NonZeroU32::new(name).map(glow::NativeTexture)
 }

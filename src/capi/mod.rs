@@ -1,4 +1,4 @@
-//! The C interface of `include/varikernel.h`: the radius pipeline by handles, plain structs and status codes.
+//! The C interface of `include/varikernel.h`: the pipelines by handles, plain structs and status codes.
 //!
 //! The header is generated from the files here, so their comments speak to C programmers; `examples/cpp` is a host that
 //! uses it. What C can get wrong and we can see is a status: null pointers, values out of range, another thread, no
@@ -10,13 +10,16 @@
 
 mod context;
 mod frame;
+mod handle;
+mod irradiance;
 mod pipeline;
 mod settings;
 mod status;
 mod version;
 
 use context::{Context, Home};
-use frame::PlainFrame;
+use frame::{PlainFrame, texture};
+use handle::{Handle, destroy};
 use settings::PlainSettings;
 use status::{Failure, Status, answer};
 

@@ -1,10 +1,10 @@
 //! Density texture in, radius texture out.
 
-use std::cell::Cell;
-
 use glam::UVec2;
 
-use super::{Context, Failure, Home, PlainFrame, PlainSettings, Status, answer, check_place, given};
+use super::{
+    Context, Failure, Handle, PlainFrame, PlainSettings, Status, answer, check_place, destroy, given,
+};
 use crate::adaptive::AdaptivePipeline;
 use crate::error::Error;
 use crate::frame::Frame;
@@ -15,12 +15,9 @@ use crate::settings::Settings;
 
 /// Density map in, radius map out, for one size and one set of settings.
 pub struct Pipeline {
-    home: Home,
-    gl: Gl,
+    handle: Handle<Stages>,
     format: TextureFormat,
     settings: (Settings, bool),
-    /// Taken while a call works with it, so that what a panic leaves half done is not there for the next.
-    stages: Cell<Option<Stages>>,
 }
 
 enum Stages {
@@ -52,19 +49,6 @@ impl Stages {
     }
 }
 
-impl Pipeline {
-    /// Works with the stages, on their thread and with a context.
-    fn with<T>(&self, work: impl FnOnce(&mut Stages) -> Result<T, Failure>) -> Result<T, Failure> {
-        self.home.check()?;
-        let mut stages = self.stages.take().ok_or_else(|| {
-            Failure::new(Status::Internal, "the pipeline broke in an earlier call\nhelp: destroy it")
-        })?;
-        let outcome = work(&mut stages);
-        self.stages.set(Some(stages));
-        outcome
-    }
-}
-
 /// Allocates and compiles for density maps of `width` x `height` pixels in `density_format`: GL_R32F, as additive blending
 /// of points fills it, GL_R32UI, GL_R16UI or GL_R8UI. Takes milliseconds to seconds; frames only draw.
 ///
@@ -90,8 +74,7 @@ pub unsafe extern "C" fn varikernel_pipeline_create(
         let settings = unsafe { settings.as_ref() }.map(PlainSettings::read).transpose()?.unwrap_or_default();
         let format = read_format(density_format)?;
         let stages = Stages::new(&context.gl, UVec2::new(width, height), format, settings)?;
-        let (home, gl, stages) = (context.home, context.gl.clone(), Cell::new(Some(stages)));
-        let made = Pipeline { home, gl, format, settings, stages };
+        let made = Pipeline { handle: Handle::new(context, stages), format, settings };
         // SAFETY: the host gives a pointer to write to.
         unsafe { pipeline.write(Box::into_raw(Box::new(made))) };
         Ok(())
@@ -120,8 +103,8 @@ pub unsafe extern "C" fn varikernel_render(
         // SAFETY: the host gives a frame or null.
         let frame = unsafe { given(frame, "frame") }?;
         check_place(radius_texture, "radius_texture")?;
-        let (radius, limited) = pipeline.with(|stages| {
-            let (density, mask) = frame.borrow(&pipeline.gl)?;
+        let (radius, limited) = pipeline.handle.with(|gl, stages| {
+            let (density, mask) = frame.borrow(gl)?;
             let changed = frame.read_changed()?;
             let radii = stages.update(&Frame { density: &density, mask: mask.as_ref(), changed })?;
             Ok((radii.texture(), radii.limited_texture()))
@@ -150,9 +133,8 @@ pub unsafe extern "C" fn varikernel_pipeline_resize(
     answer(|| {
         // SAFETY: the host gives a handle that was not destroyed, or null.
         let pipeline = unsafe { given(pipeline, "pipeline") }?;
-        pipeline.with(|stages| {
-            *stages =
-                Stages::new(&pipeline.gl, UVec2::new(width, height), pipeline.format, pipeline.settings)?;
+        pipeline.handle.with(|gl, stages| {
+            *stages = Stages::new(gl, UVec2::new(width, height), pipeline.format, pipeline.settings)?;
             Ok(())
         })
     })
@@ -164,16 +146,8 @@ pub unsafe extern "C" fn varikernel_pipeline_resize(
 /// handle's few kilobytes stay behind.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn varikernel_pipeline_destroy(pipeline: *mut Pipeline) -> Status {
-    answer(|| {
-        if pipeline.is_null() {
-            return Ok(());
-        }
-        // SAFETY: the host gives a handle that was not destroyed.
-        unsafe { given(pipeline, "pipeline") }?.home.check()?;
-        // SAFETY: as above, and `varikernel_pipeline_create` made it of a box.
-        drop(unsafe { Box::from_raw(pipeline) });
-        Ok(())
-    })
+    // SAFETY: the host gives a handle that `varikernel_pipeline_create` made and that was not destroyed, or null.
+    unsafe { destroy(pipeline, |pipeline| pipeline.handle.home()) }
 }
 
 /// A format by the value of its GL enum.

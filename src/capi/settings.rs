@@ -60,10 +60,7 @@ pub unsafe extern "C" fn varikernel_settings_default(settings: *mut PlainSetting
             struct_size: size,
             min_photons,
             max_radius,
-            edges: match edges {
-                Edges::Zero => VARIKERNEL_EDGES_ZERO,
-                Edges::Scale => VARIKERNEL_EDGES_SCALE,
-            },
+            edges: write_edges(edges),
             order: match order {
                 Order::Bracketed => VARIKERNEL_ORDER_BRACKETED,
                 Order::Forward => VARIKERNEL_ORDER_FORWARD,
@@ -82,11 +79,7 @@ impl PlainSettings {
     /// The settings, and whether the order is to be chosen frame by frame. Ranges that the library checks are left to it.
     pub(super) fn read(&self) -> Result<(Settings, bool), Failure> {
         check_size("varikernel_settings", self.struct_size, SIZE)?;
-        let edges = match self.edges {
-            VARIKERNEL_EDGES_ZERO => Edges::Zero,
-            VARIKERNEL_EDGES_SCALE => Edges::Scale,
-            other => return Err(out_of_range("edges", other, "it is one of VARIKERNEL_EDGES_...")),
-        };
+        let edges = read_edges(self.edges)?;
         let is_adaptive = self.order == VARIKERNEL_ORDER_ADAPTIVE;
         let order = match self.order {
             VARIKERNEL_ORDER_BRACKETED | VARIKERNEL_ORDER_ADAPTIVE => Order::Bracketed,
@@ -101,5 +94,22 @@ impl PlainSettings {
             ..Settings::default()
         };
         Ok((settings, is_adaptive))
+    }
+}
+
+/// An edge rule by its number.
+pub(super) fn read_edges(value: u32) -> Result<Edges, Failure> {
+    match value {
+        VARIKERNEL_EDGES_ZERO => Ok(Edges::Zero),
+        VARIKERNEL_EDGES_SCALE => Ok(Edges::Scale),
+        other => Err(out_of_range("edges", other, "it is one of VARIKERNEL_EDGES_...")),
+    }
+}
+
+/// The number of an edge rule.
+pub(super) fn write_edges(edges: Edges) -> u32 {
+    match edges {
+        Edges::Zero => VARIKERNEL_EDGES_ZERO,
+        Edges::Scale => VARIKERNEL_EDGES_SCALE,
     }
 }

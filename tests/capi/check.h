@@ -38,7 +38,7 @@ static int is_expected(varikernel_status got, varikernel_status expected, const 
     } while (0)
 
 /* A texture of 8-bit integers. */
-static GLuint texture_of_bytes(int width, int height, const unsigned char *texels) {
+static inline GLuint texture_of_bytes(int width, int height, const unsigned char *texels) {
     GLuint texture = 0;
     glGenTextures(1, &texture);
     glBindTexture(GL_TEXTURE_2D, texture);

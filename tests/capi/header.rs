@@ -5,7 +5,17 @@ use std::fs;
 use crate::root;
 
 /// In the order of the header.
-const SOURCES: [&str; 6] = ["version", "status", "context", "settings", "frame", "pipeline"];
+const SOURCES: [&str; 9] = [
+    "version",
+    "status",
+    "context",
+    "settings",
+    "frame",
+    "pipeline",
+    "irradiance/settings",
+    "irradiance/frame",
+    "irradiance/mod",
+];
 
 fn generated() -> String {
     let config = cbindgen::Config::from_file(root().join("cbindgen.toml")).unwrap();
