@@ -121,6 +121,7 @@ fn the_host_in_cpp_finds_the_radii_of_the_definition() {
         "160 x 120: mean radius ",
         "97 x 61: mean radius ",
         ", 0 pixels differ from the definition",
+        "the photons' power of 1 is 1.0000 in the picture",
         "a frame without a texture: density_texture is null",
     ] {
         assert!(words.contains(expected), "{expected:?} in:\n{words}");
