@@ -120,7 +120,7 @@
 /**
  * How a call ended.
  */
-typedef enum {
+typedef enum varikernel_status {
     /**
      * All went well.
      */
@@ -207,7 +207,7 @@ typedef void *(*varikernel_loader)(const char *name, void *user);
  *
  * Boxes are counted in a summed-area table, exact or refused. The order of the search changes no radius.
  */
-typedef struct {
+typedef struct varikernel_settings {
     /**
      * sizeof(varikernel_settings), by which another version's struct is told.
      */
@@ -241,7 +241,7 @@ typedef struct {
 /**
  * One frame. Fill it with varikernel_frame_default, then say what you know.
  */
-typedef struct {
+typedef struct varikernel_frame {
     /**
      * sizeof(varikernel_frame), by which another version's struct is told.
      */
@@ -286,7 +286,7 @@ typedef struct {
 /**
  * How photons become irradiance. Fill it with varikernel_irradiance_settings_default, then change what you like.
  */
-typedef struct {
+typedef struct varikernel_irradiance_settings {
     /**
      * sizeof(varikernel_irradiance_settings), by which another version's struct is told.
      */
@@ -320,7 +320,7 @@ typedef struct {
 /**
  * One frame of photons on surfaces. Fill it with varikernel_irradiance_frame_default, then say what you have.
  */
-typedef struct {
+typedef struct varikernel_irradiance_frame {
     /**
      * sizeof(varikernel_irradiance_frame), by which another version's struct is told.
      */
@@ -371,7 +371,7 @@ typedef struct {
 /**
  * A photon in a vertex buffer of the host.
  */
-typedef struct {
+typedef struct varikernel_photon {
     /**
      * Where it landed, in scene units.
      */
@@ -422,9 +422,9 @@ const char *varikernel_last_error(void);
  *
  * Fails with NO_CONTEXT, VERSION, INVALID_ARGUMENT.
  */
-varikernel_status varikernel_context_create(varikernel_loader loader,
-                                            void *user,
-                                            varikernel_context **context);
+enum varikernel_status varikernel_context_create(varikernel_loader loader,
+                                                 void *user,
+                                                 struct varikernel_context **context);
 
 /**
  * Frees a context; null is fine. Pipelines made in it stay usable: the last of them frees what they share.
@@ -432,21 +432,22 @@ varikernel_status varikernel_context_create(varikernel_loader loader,
  * Fails with WRONG_THREAD and NO_CONTEXT, and frees nothing then. Destroy before the OpenGL context goes: after it, the
  * handle's few kilobytes stay behind.
  */
-varikernel_status varikernel_context_destroy(varikernel_context *context);
+enum varikernel_status varikernel_context_destroy(struct varikernel_context *context);
 
 /**
  * Fills `settings` with the defaults. `size` is sizeof(varikernel_settings).
  *
  * Fails with INVALID_ARGUMENT.
  */
-varikernel_status varikernel_settings_default(varikernel_settings *settings, uint32_t size);
+enum varikernel_status varikernel_settings_default(struct varikernel_settings *settings,
+                                                   uint32_t size);
 
 /**
  * Fills `frame` with the defaults, without a texture. `size` is sizeof(varikernel_frame).
  *
  * Fails with INVALID_ARGUMENT.
  */
-varikernel_status varikernel_frame_default(varikernel_frame *frame, uint32_t size);
+enum varikernel_status varikernel_frame_default(struct varikernel_frame *frame, uint32_t size);
 
 /**
  * Allocates and compiles for density maps of `width` x `height` pixels in `density_format`: GL_R32F, as additive blending
@@ -457,12 +458,12 @@ varikernel_status varikernel_frame_default(varikernel_frame *frame, uint32_t siz
  * Fails with SETTING, TOO_LARGE, MISMATCH for another format, SHADER, OUT_OF_MEMORY, OPEN_GL, INVALID_ARGUMENT,
  * WRONG_THREAD, NO_CONTEXT.
  */
-varikernel_status varikernel_pipeline_create(const varikernel_context *context,
-                                             uint32_t width,
-                                             uint32_t height,
-                                             uint32_t density_format,
-                                             const varikernel_settings *settings,
-                                             varikernel_pipeline **pipeline);
+enum varikernel_status varikernel_pipeline_create(const struct varikernel_context *context,
+                                                  uint32_t width,
+                                                  uint32_t height,
+                                                  uint32_t density_format,
+                                                  const struct varikernel_settings *settings,
+                                                  struct varikernel_pipeline **pipeline);
 
 /**
  * Finds the radii of a frame: draws only, reads nothing back, waits for nothing.
@@ -475,10 +476,10 @@ varikernel_status varikernel_pipeline_create(const varikernel_context *context,
  * Fails with MISMATCH, INEXACT, SETTING, OUT_OF_MEMORY, CONTEXT_LOST, OPEN_GL, INVALID_ARGUMENT, WRONG_THREAD,
  * NO_CONTEXT; the next frame may succeed.
  */
-varikernel_status varikernel_render(varikernel_pipeline *pipeline,
-                                    const varikernel_frame *frame,
-                                    uint32_t *radius_texture,
-                                    uint32_t *limited_texture);
+enum varikernel_status varikernel_render(struct varikernel_pipeline *pipeline,
+                                         const struct varikernel_frame *frame,
+                                         uint32_t *radius_texture,
+                                         uint32_t *limited_texture);
 
 /**
  * From now on for density maps of another size, with the same format and settings; the next frame starts from nothing.
@@ -486,9 +487,9 @@ varikernel_status varikernel_render(varikernel_pipeline *pipeline,
  *
  * Fails as varikernel_pipeline_create, and the pipeline then goes on at its old size.
  */
-varikernel_status varikernel_pipeline_resize(varikernel_pipeline *pipeline,
-                                             uint32_t width,
-                                             uint32_t height);
+enum varikernel_status varikernel_pipeline_resize(struct varikernel_pipeline *pipeline,
+                                                  uint32_t width,
+                                                  uint32_t height);
 
 /**
  * Frees a pipeline with its textures; null is fine.
@@ -496,23 +497,23 @@ varikernel_status varikernel_pipeline_resize(varikernel_pipeline *pipeline,
  * Fails with WRONG_THREAD and NO_CONTEXT, and frees nothing then. Destroy before the OpenGL context goes: after it, the
  * handle's few kilobytes stay behind.
  */
-varikernel_status varikernel_pipeline_destroy(varikernel_pipeline *pipeline);
+enum varikernel_status varikernel_pipeline_destroy(struct varikernel_pipeline *pipeline);
 
 /**
  * Fills `settings` with the defaults. `size` is sizeof(varikernel_irradiance_settings).
  *
  * Fails with INVALID_ARGUMENT.
  */
-varikernel_status varikernel_irradiance_settings_default(varikernel_irradiance_settings *settings,
-                                                         uint32_t size);
+enum varikernel_status varikernel_irradiance_settings_default(struct varikernel_irradiance_settings *settings,
+                                                              uint32_t size);
 
 /**
  * Fills `frame` with the defaults, without textures, photons and camera. `size` is sizeof(varikernel_irradiance_frame).
  *
  * Fails with INVALID_ARGUMENT.
  */
-varikernel_status varikernel_irradiance_frame_default(varikernel_irradiance_frame *frame,
-                                                      uint32_t size);
+enum varikernel_status varikernel_irradiance_frame_default(struct varikernel_irradiance_frame *frame,
+                                                           uint32_t size);
 
 /**
  * Allocates and compiles for surfaces of `width` x `height` pixels. Takes milliseconds to seconds; frames only draw.
@@ -522,11 +523,11 @@ varikernel_status varikernel_irradiance_frame_default(varikernel_irradiance_fram
  *
  * Fails with SETTING, TOO_LARGE, SHADER, OUT_OF_MEMORY, OPEN_GL, INVALID_ARGUMENT, WRONG_THREAD, NO_CONTEXT.
  */
-varikernel_status varikernel_irradiance_create(const varikernel_context *context,
-                                               uint32_t width,
-                                               uint32_t height,
-                                               const varikernel_irradiance_settings *settings,
-                                               varikernel_irradiance **irradiance);
+enum varikernel_status varikernel_irradiance_create(const struct varikernel_context *context,
+                                                    uint32_t width,
+                                                    uint32_t height,
+                                                    const struct varikernel_irradiance_settings *settings,
+                                                    struct varikernel_irradiance **irradiance);
 
 /**
  * Finds the light that photons bring to the surfaces: counts them, finds radii, draws a kernel for each.
@@ -541,33 +542,33 @@ varikernel_status varikernel_irradiance_create(const varikernel_context *context
  * Fails with MISMATCH, INEXACT, SETTING, OUT_OF_MEMORY, CONTEXT_LOST, OPEN_GL, INVALID_ARGUMENT, WRONG_THREAD,
  * NO_CONTEXT; the next frame may succeed.
  */
-varikernel_status varikernel_irradiance_render(varikernel_irradiance *irradiance,
-                                               const varikernel_irradiance_frame *frame,
-                                               uint32_t *irradiance_texture,
-                                               uint32_t *radius_texture);
+enum varikernel_status varikernel_irradiance_render(struct varikernel_irradiance *irradiance,
+                                                    const struct varikernel_irradiance_frame *frame,
+                                                    uint32_t *irradiance_texture,
+                                                    uint32_t *radius_texture);
 
 /**
  * Frees the handle with its textures; null is fine. As varikernel_pipeline_destroy.
  *
  * Fails with WRONG_THREAD and NO_CONTEXT, and frees nothing then.
  */
-varikernel_status varikernel_irradiance_destroy(varikernel_irradiance *irradiance);
+enum varikernel_status varikernel_irradiance_destroy(struct varikernel_irradiance *irradiance);
 
 /**
  * Fills `frame` with the defaults, without textures, photons and camera. `size` is sizeof(varikernel_irradiance_frame).
  *
  * Fails with INVALID_ARGUMENT.
  */
-varikernel_status varikernel_irradiance_frame_default(varikernel_irradiance_frame *frame,
-                                                      uint32_t size);
+enum varikernel_status varikernel_irradiance_frame_default(struct varikernel_irradiance_frame *frame,
+                                                           uint32_t size);
 
 /**
  * Fills `settings` with the defaults. `size` is sizeof(varikernel_irradiance_settings).
  *
  * Fails with INVALID_ARGUMENT.
  */
-varikernel_status varikernel_irradiance_settings_default(varikernel_irradiance_settings *settings,
-                                                         uint32_t size);
+enum varikernel_status varikernel_irradiance_settings_default(struct varikernel_irradiance_settings *settings,
+                                                              uint32_t size);
 
 #ifdef __cplusplus
 }  // extern "C"
