@@ -153,13 +153,13 @@ int main() {
     headless host;
     require(headless_open(&host), "opening a headless OpenGL 3.3 context");
 
-    // Step 2: your loader becomes a handle.
-    varikernel_context *context = nullptr;
-    check(varikernel_context_create(headless_loader, nullptr, &context), "taking the context");
-    std::printf("varikernel %s on %s\n", varikernel_version(), reinterpret_cast<const char *>(glGetString(GL_RENDERER)));
-
-    // Step 3: header and library are of one version.
+    // Step 2: header and library are of one version, and your loader becomes a handle.
     require(varikernel_is_compatible(VARIKERNEL_VERSION_MAJOR, VARIKERNEL_VERSION_MINOR), "one version of header and library");
+    varikernel_context *context = nullptr;
+    // Step 3: who puts the OpenGL state back: varikernel does. The other choice is to start from the defaults.
+    const uint32_t policy = VARIKERNEL_STATE_RESTORE;
+    check(varikernel_context_create(headless_loader, nullptr, policy, &context), "taking the context");
+    std::printf("varikernel %s on %s\n", varikernel_version(), reinterpret_cast<const char *>(glGetString(GL_RENDERER)));
 
     // Step 4: settings: the smallest box that holds 20 photons, up to radius 16.
     varikernel_settings settings;

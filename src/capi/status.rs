@@ -68,8 +68,10 @@ impl From<Error> for Failure {
                 _ => Status::OpenGl,
             },
             Error::NoContext(_) => Status::NoContext,
-            // Nothing here reads files or lets a caller name uniforms.
-            Error::File { .. } | Error::UnknownUniform { .. } => Status::Internal,
+            // Nothing here reads files, lets a caller name uniforms or needs a query.
+            Error::File { .. } | Error::UnknownUniform { .. } | Error::QueryRunning { .. } => {
+                Status::Internal
+            }
         };
         Self::new(status, error.to_string())
     }

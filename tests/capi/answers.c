@@ -28,6 +28,7 @@ static int holds_radii(GLuint texture, const GLuint (*expected)[SIDE]) {
     GLuint found[SIDE][SIDE];
     glBindTexture(GL_TEXTURE_2D, texture);
     glGetTexImage(GL_TEXTURE_2D, 0, GL_RED_INTEGER, GL_UNSIGNED_INT, found);
+    glBindTexture(GL_TEXTURE_2D, 0);
     return memcmp(found, expected, sizeof found) == 0;
 }
 
@@ -36,6 +37,8 @@ static int holds_bytes(GLuint texture, const GLubyte (*expected)[SIDE]) {
     glBindTexture(GL_TEXTURE_2D, texture);
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
     glGetTexImage(GL_TEXTURE_2D, 0, GL_RED_INTEGER, GL_UNSIGNED_BYTE, found);
+    glPixelStorei(GL_PACK_ALIGNMENT, 4);
+    glBindTexture(GL_TEXTURE_2D, 0);
     return memcmp(found, expected, sizeof found) == 0;
 }
 
@@ -52,8 +55,7 @@ static void frames(varikernel_pipeline *pipeline, GLuint density) {
     EXPECT_TRUE(!holds_radii(radii, both_radii) && !holds_bytes(limited, both_photons));
 
     /* The map becomes that of both photons, but it is said that nothing has changed. */
-    glBindTexture(GL_TEXTURE_2D, density);
-    glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, SIDE, SIDE, GL_RED_INTEGER, GL_UNSIGNED_BYTE, both_photons);
+    put_bytes(density, SIDE, SIDE, both_photons[0]);
     frame.photons_at_most = 2;
     frame.changed = VARIKERNEL_CHANGED_NOTHING;
     EXPECT_OK(varikernel_render(pipeline, &frame, &radii, &limited));
@@ -66,8 +68,7 @@ static void frames(varikernel_pipeline *pipeline, GLuint density) {
     EXPECT_TRUE(holds_radii(radii, both_radii));
 
     /* From the first photon alone, the second is added. */
-    glBindTexture(GL_TEXTURE_2D, density);
-    glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, SIDE, SIDE, GL_RED_INTEGER, GL_UNSIGNED_BYTE, first_photon);
+    put_bytes(density, SIDE, SIDE, first_photon[0]);
     frame.changed = VARIKERNEL_CHANGED_EVERYTHING;
     EXPECT_OK(varikernel_render(pipeline, &frame, &radii, &limited));
     EXPECT_TRUE(holds_radii(radii, first_radii));
@@ -92,19 +93,30 @@ static void masked_frame(const varikernel_context *context, varikernel_settings 
     EXPECT_OK(varikernel_render(pipeline, &frame, &radii, NULL));
     glBindTexture(GL_TEXTURE_2D, radii);
     glGetTexImage(GL_TEXTURE_2D, 0, GL_RED_INTEGER, GL_UNSIGNED_INT, found);
+    glBindTexture(GL_TEXTURE_2D, 0);
     EXPECT_TRUE(memcmp(found[0], zeros, sizeof zeros) == 0);
     EXPECT_TRUE(memcmp(found[1], first_radii[1], sizeof found - sizeof zeros) == 0);
     EXPECT_OK(varikernel_pipeline_destroy(pipeline));
     glDeleteTextures(1, &mask);
 }
 
-int main(void) {
-    headless host;
+/* What is not at its default comes back, or becomes it. */
+static void left_state(varikernel_pipeline *pipeline, GLuint density, uint32_t state_policy) {
+    GLuint radii = 0;
+    varikernel_frame frame;
+    EXPECT_OK(varikernel_frame_default(&frame, sizeof frame));
+    frame.density_texture = density;
+    glEnable(GL_CULL_FACE);
+    EXPECT_OK(varikernel_render(pipeline, &frame, &radii, NULL));
+    EXPECT_TRUE(glIsEnabled(GL_CULL_FACE) == (state_policy == VARIKERNEL_STATE_RESTORE));
+    glDisable(GL_CULL_FACE);
+}
+
+static void all_orders(uint32_t state_policy) {
     varikernel_context *context = NULL;
     varikernel_settings settings;
     uint32_t order;
-    EXPECT_TRUE(headless_open(&host));
-    EXPECT_OK(varikernel_context_create(headless_loader, NULL, &context));
+    EXPECT_OK(varikernel_context_create(headless_loader, NULL, state_policy, &context));
     EXPECT_OK(varikernel_settings_default(&settings, sizeof settings));
     settings.min_photons = 1;
     settings.max_radius = 3;
@@ -117,10 +129,18 @@ int main(void) {
         EXPECT_OK(varikernel_pipeline_create(context, SIDE, SIDE, GL_R8UI, &settings, &pipeline));
         frames(pipeline, density);
         masked_frame(context, settings, density);
+        left_state(pipeline, density, state_policy);
         EXPECT_OK(varikernel_pipeline_destroy(pipeline));
         glDeleteTextures(1, &density);
     }
     EXPECT_OK(varikernel_context_destroy(context));
+}
+
+int main(void) {
+    headless host;
+    EXPECT_TRUE(headless_open(&host));
+    all_orders(VARIKERNEL_STATE_RESTORE);
+    all_orders(VARIKERNEL_STATE_DEFAULTS);
     EXPECT_TRUE(glGetError() == GL_NO_ERROR);
     headless_close(&host);
     printf("%d failures\n", failures);

@@ -37,14 +37,20 @@ static int is_expected(varikernel_status got, varikernel_status expected, const 
         }                                                        \
     } while (0)
 
+/* Gives a texture other 8-bit integers, and leaves the state of OpenGL at its defaults. */
+static inline void put_bytes(GLuint texture, int width, int height, const unsigned char *texels) {
+    glBindTexture(GL_TEXTURE_2D, texture);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_R8UI, width, height, 0, GL_RED_INTEGER, GL_UNSIGNED_BYTE, texels);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    glBindTexture(GL_TEXTURE_2D, 0);
+}
+
 /* A texture of 8-bit integers. */
 static inline GLuint texture_of_bytes(int width, int height, const unsigned char *texels) {
     GLuint texture = 0;
     glGenTextures(1, &texture);
-    glBindTexture(GL_TEXTURE_2D, texture);
-    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-    glTexImage2D(GL_TEXTURE_2D, 0, GL_R8UI, width, height, 0, GL_RED_INTEGER, GL_UNSIGNED_BYTE, texels);
-    glBindTexture(GL_TEXTURE_2D, 0);
+    put_bytes(texture, width, height, texels);
     return texture;
 }
 

@@ -190,7 +190,7 @@ int main(void) {
     headless host;
     GLuint positions = 0, normals = 0, depth = 0, buffer = 0;
     EXPECT_TRUE(headless_open(&host));
-    EXPECT_OK(varikernel_context_create(headless_loader, NULL, &context));
+    EXPECT_OK(varikernel_context_create(headless_loader, NULL, VARIKERNEL_STATE_RESTORE, &context));
     EXPECT_OK(varikernel_irradiance_settings_default(&settings, sizeof settings));
     EXPECT_TRUE(settings.fixed_radius == 0 && settings.min_photons == 400 && settings.max_radius == 64);
     EXPECT_TRUE(settings.kernel == VARIKERNEL_KERNEL_SILVERMAN && settings.edges == VARIKERNEL_EDGES_SCALE);

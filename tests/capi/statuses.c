@@ -53,16 +53,17 @@ static void versions(void) {
 
 static void contexts(const headless *host) {
     varikernel_context *none = NULL;
-    EXPECT(varikernel_context_create(NULL, NULL, &none), VARIKERNEL_STATUS_INVALID_ARGUMENT, "loader is null");
-    EXPECT(varikernel_context_create(headless_loader, NULL, NULL), VARIKERNEL_STATUS_INVALID_ARGUMENT, "context is null");
-    EXPECT(varikernel_context_create(knows_nothing, NULL, &none), VARIKERNEL_STATUS_NO_CONTEXT, "glGetString");
+    EXPECT(varikernel_context_create(NULL, NULL, 0, &none), VARIKERNEL_STATUS_INVALID_ARGUMENT, "loader is null");
+    EXPECT(varikernel_context_create(headless_loader, NULL, 0, NULL), VARIKERNEL_STATUS_INVALID_ARGUMENT, "context is null");
+    EXPECT(varikernel_context_create(knows_nothing, NULL, 0, &none), VARIKERNEL_STATUS_NO_CONTEXT, "glGetString");
+    EXPECT(varikernel_context_create(headless_loader, NULL, 2, &none), VARIKERNEL_STATUS_SETTING, "state_policy");
     /* A loader that breaks its word is a panic in the library, which ends at the boundary. */
-    EXPECT(varikernel_context_create(knows_one_command, NULL, &none), VARIKERNEL_STATUS_INTERNAL, "internal error: ");
+    EXPECT(varikernel_context_create(knows_one_command, NULL, 0, &none), VARIKERNEL_STATUS_INTERNAL, "internal error: ");
     EXPECT_TRUE(headless_make_current(host, 0));
-    EXPECT(varikernel_context_create(headless_loader, NULL, &none), VARIKERNEL_STATUS_NO_CONTEXT, "current");
+    EXPECT(varikernel_context_create(headless_loader, NULL, VARIKERNEL_STATE_RESTORE, &none), VARIKERNEL_STATUS_NO_CONTEXT, "current");
     EXPECT_TRUE(headless_make_current(host, 1));
     EXPECT_TRUE(none == NULL);
-    EXPECT_OK(varikernel_context_create(headless_loader, NULL, &context));
+    EXPECT_OK(varikernel_context_create(headless_loader, NULL, VARIKERNEL_STATE_RESTORE, &context));
 }
 
 static void wrong_settings(void) {
