@@ -338,7 +338,8 @@ typedef struct varikernel_irradiance_frame {
     uint32_t struct_size;
     /**
      * A GL_TEXTURE_2D in GL_RGBA32F: the place that each pixel shows in scene units, and as fourth value its depth along the
-     * view, 0 where nothing is seen. With from_depth, a texture with depth, drawn with the whole depth range.
+     * view, 0 where nothing is seen. With from_depth, a texture with depth, drawn with the whole
+     * depth range; it keeps its format and size.
      */
     uint32_t position_texture;
     /**
@@ -550,7 +551,8 @@ enum varikernel_status varikernel_irradiance_create(const struct varikernel_cont
  * varikernel_render, or 0 for a fixed radius; the pointer may be null. Both belong to the handle and hold until its next
  * frame.
  *
- * Waits for the GPU only where a pixel may hold 2^24 photons.
+ * Waits for the GPU only where a pixel may hold 2^24 photons. With from_depth, a shader is compiled when a depth texture is
+ * first seen.
  *
  * Fails with MISMATCH, INEXACT, SETTING, OUT_OF_MEMORY, CONTEXT_LOST, OPEN_GL, INVALID_ARGUMENT, WRONG_THREAD,
  * NO_CONTEXT; the next frame may succeed.

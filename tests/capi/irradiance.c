@@ -120,6 +120,13 @@ static void answers(GLuint positions, GLuint depth) {
     EXPECT_OK(make());
     frame.position_texture = depth;
     a_photon_of_radius_3_lights_45_pixels();
+    a_photon_of_radius_3_lights_45_pixels();
+    /* Read as depth from 0 to 1 in clip space, it is another place, where no photon is. */
+    frame.depth_zero_to_one = 1;
+    EXPECT_OK(render());
+    EXPECT_TRUE(power() == 0);
+    frame.depth_zero_to_one = 0;
+    a_photon_of_radius_3_lights_45_pixels();
     frame.position_texture = positions;
     settings.from_depth = 0;
 

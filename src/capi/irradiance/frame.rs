@@ -5,7 +5,7 @@ use std::num::NonZeroU32;
 
 use glam::{Mat4, UVec2};
 
-use super::{Failure, Status, answer, check_place, check_size, flag, texture};
+use super::{Failure, Positions, Status, answer, check_place, check_size, flag, texture};
 use crate::gl::Gl;
 use crate::maps::{HostSurfaces, PhotonPoints, SurfaceMaps};
 use crate::photon_point::PhotonPoint;
@@ -41,7 +41,8 @@ pub struct PlainIrradianceFrame {
     /// sizeof(varikernel_irradiance_frame), by which another version's struct is told.
     pub struct_size: u32,
     /// A GL_TEXTURE_2D in GL_RGBA32F: the place that each pixel shows in scene units, and as fourth value its depth along the
-    /// view, 0 where nothing is seen. With from_depth, a texture with depth, drawn with the whole depth range.
+    /// view, 0 where nothing is seen. With from_depth, a texture with depth, drawn with the whole
+    /// depth range; it keeps its format and size.
     pub position_texture: u32,
     /// A GL_TEXTURE_2D in GL_RGBA32F, GL_RGBA16F, GL_RGB32F or GL_RGB16F: the normal of length 1 towards the camera, and as
     /// fourth value the surface's number from 1 on, negative where photons do not land, 0 where nothing is seen. Without
@@ -108,7 +109,7 @@ impl PlainIrradianceFrame {
         &self,
         gl: &Gl,
         size: UVec2,
-        positions: Option<&mut PositionMaker>,
+        positions: &mut Positions,
     ) -> Result<(SurfaceMaps, PhotonPoints), Failure> {
         let named = |name: u32, what: &str| texture(name).ok_or_else(|| crate::capi::null(what));
         let position = named(self.position_texture, "position_texture")?;
@@ -123,8 +124,12 @@ impl PlainIrradianceFrame {
             zero_to_one: flag("depth_zero_to_one", self.depth_zero_to_one)?,
         };
         let position = match positions {
-            Some(maker) => maker.from_depth(depth, &view)?,
-            None => position,
+            Positions::Given => position,
+            Positions::FromDepth(Some(known)) if known.0 == depth => known.1.render(&view)?,
+            Positions::FromDepth(other) => {
+                let made = Box::new((depth, PositionMaker::borrow(gl, depth)?));
+                other.insert(made).1.render(&view)?
+            }
         };
         let surfaces = SurfaceMaps::borrow(gl, view, HostSurfaces { position, normal })?;
         Ok((surfaces, PhotonPoints::borrow(gl, buffer, self.photon_count)?))

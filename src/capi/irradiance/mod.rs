@@ -11,18 +11,25 @@ use super::{
 };
 use crate::irradiance::IrradiancePipeline;
 use crate::maps::RadiusMap;
-use crate::position::PositionMaker;
+use crate::position::{HostDepth, PositionMaker};
 use frame::PlainIrradianceFrame;
 use settings::PlainIrradianceSettings;
 
 /// Photons and surfaces in, irradiance out, for one size and one set of settings.
 pub struct Irradiance(Handle<Stages>);
 
+/// Where places come from.
+enum Positions {
+    /// A texture of the host.
+    Given,
+    /// A depth buffer of the host; with what was made for it, once it was seen.
+    FromDepth(Option<Box<(HostDepth, PositionMaker)>>),
+}
+
 struct Stages {
     size: UVec2,
     pipeline: Box<IrradiancePipeline>,
-    /// Where the host has depth in place of positions.
-    positions: Option<PositionMaker>,
+    positions: Positions,
 }
 
 /// Allocates and compiles for surfaces of `width` x `height` pixels. Takes milliseconds to seconds; frames only draw.
@@ -49,7 +56,7 @@ pub unsafe extern "C" fn varikernel_irradiance_create(
         let (settings, has_depth) = settings.unwrap_or_default();
         let (gl, size) = (&context.gl, UVec2::new(width, height));
         let pipeline = Box::new(IrradiancePipeline::new(gl, size, settings)?);
-        let positions = has_depth.then(|| PositionMaker::new(gl, size)).transpose()?;
+        let positions = if has_depth { Positions::FromDepth(None) } else { Positions::Given };
         let made = Irradiance(Handle::new(context, Stages { size, pipeline, positions }));
         // SAFETY: the host gives a pointer to write to.
         unsafe { irradiance.write(Box::into_raw(Box::new(made))) };
@@ -64,7 +71,8 @@ pub unsafe extern "C" fn varikernel_irradiance_create(
 /// varikernel_render, or 0 for a fixed radius; the pointer may be null. Both belong to the handle and hold until its next
 /// frame.
 ///
-/// Waits for the GPU only where a pixel may hold 2^24 photons.
+/// Waits for the GPU only where a pixel may hold 2^24 photons. With from_depth, a shader is compiled when a depth texture is
+/// first seen.
 ///
 /// Fails with MISMATCH, INEXACT, SETTING, OUT_OF_MEMORY, CONTEXT_LOST, OPEN_GL, INVALID_ARGUMENT, WRONG_THREAD,
 /// NO_CONTEXT; the next frame may succeed.
@@ -83,7 +91,7 @@ pub unsafe extern "C" fn varikernel_irradiance_render(
         check_place(irradiance_texture, "irradiance_texture")?;
         let (light, radius) = irradiance.0.with(|gl, stages| {
             let is_added = frame.read_added()?;
-            let (surfaces, photons) = frame.borrow(gl, stages.size, stages.positions.as_mut())?;
+            let (surfaces, photons) = frame.borrow(gl, stages.size, &mut stages.positions)?;
             let pipeline = &mut stages.pipeline;
             let light = if is_added {
                 pipeline.add(&surfaces, &photons)
