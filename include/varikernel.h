@@ -173,11 +173,11 @@ typedef enum varikernel_status {
      */
     VARIKERNEL_STATUS_SHADER = 9,
     /**
-     * GL_OUT_OF_MEMORY.
+     * GL_OUT_OF_MEMORY; what was there before is as it was.
      */
     VARIKERNEL_STATUS_OUT_OF_MEMORY = 10,
     /**
-     * GL_CONTEXT_LOST: destroy the handles, and make all anew in a new context.
+     * The driver lost the context, or the host gave it up: destroy the handles, and make all anew in a new context.
      */
     VARIKERNEL_STATUS_CONTEXT_LOST = 11,
     /**
@@ -441,10 +441,25 @@ enum varikernel_status varikernel_context_create(varikernel_loader loader,
                                                  struct varikernel_context **context);
 
 /**
+ * Tells the bytes of textures and buffers that the library holds by this handle and all that was made of it.
+ *
+ * Fails with WRONG_THREAD, NO_CONTEXT, CONTEXT_LOST, INVALID_ARGUMENT.
+ */
+enum varikernel_status varikernel_memory_held(const struct varikernel_context *context,
+                                              uint64_t *bytes);
+
+/**
+ * Says that the OpenGL context has gone, or is about to: nothing made of this handle calls OpenGL from now on. Destroying
+ * then frees memory alone, and all other calls answer CONTEXT_LOST.
+ *
+ * Fails with WRONG_THREAD, INVALID_ARGUMENT.
+ */
+enum varikernel_status varikernel_context_abandon(const struct varikernel_context *context);
+
+/**
  * Frees a context; null is fine. Pipelines made in it stay usable: the last of them frees what they share.
  *
- * Fails with WRONG_THREAD and NO_CONTEXT, and frees nothing then. Destroy before the OpenGL context goes: after it, the
- * handle's few kilobytes stay behind.
+ * Fails with WRONG_THREAD and NO_CONTEXT, and frees nothing then; see varikernel_context_abandon.
  */
 enum varikernel_status varikernel_context_destroy(struct varikernel_context *context);
 
@@ -462,6 +477,22 @@ enum varikernel_status varikernel_settings_default(struct varikernel_settings *s
  * Fails with INVALID_ARGUMENT.
  */
 enum varikernel_status varikernel_frame_default(struct varikernel_frame *frame, uint32_t size);
+
+/**
+ * Tells the memory that a pipeline takes, before it is made: bytes of textures and buffers, as large as their formats say.
+ *
+ * `*at_creation` is what varikernel_pipeline_create and varikernel_pipeline_resize allocate; `*at_most` adds what is
+ * allocated on demand, by VARIKERNEL_CHANGED_ADDED and, for VARIKERNEL_ORDER_ADAPTIVE, by each order; the pointer may be
+ * null. `settings` may be null for the defaults.
+ *
+ * Fails with SETTING, TOO_LARGE, INVALID_ARGUMENT, WRONG_THREAD, NO_CONTEXT, CONTEXT_LOST.
+ */
+enum varikernel_status varikernel_memory_required(const struct varikernel_context *context,
+                                                  uint32_t width,
+                                                  uint32_t height,
+                                                  const struct varikernel_settings *settings,
+                                                  uint64_t *at_creation,
+                                                  uint64_t *at_most);
 
 /**
  * Allocates and compiles for density maps of `width` x `height` pixels in `density_format`: GL_R32F, as additive blending
@@ -497,9 +528,10 @@ enum varikernel_status varikernel_render(struct varikernel_pipeline *pipeline,
 
 /**
  * From now on for density maps of another size, with the same format and settings; the next frame starts from nothing.
- * Textures of earlier frames are gone.
+ * Nothing is compiled. Textures of earlier frames are gone; the new ones are made before the old ones are freed.
  *
- * Fails as varikernel_pipeline_create, and the pipeline then goes on at its old size.
+ * Fails with SETTING, TOO_LARGE, OUT_OF_MEMORY, CONTEXT_LOST, OPEN_GL, INVALID_ARGUMENT, WRONG_THREAD, NO_CONTEXT, and the
+ * pipeline then goes on at its old size.
  */
 enum varikernel_status varikernel_pipeline_resize(struct varikernel_pipeline *pipeline,
                                                   uint32_t width,
@@ -508,8 +540,7 @@ enum varikernel_status varikernel_pipeline_resize(struct varikernel_pipeline *pi
 /**
  * Frees a pipeline with its textures; null is fine.
  *
- * Fails with WRONG_THREAD and NO_CONTEXT, and frees nothing then. Destroy before the OpenGL context goes: after it, the
- * handle's few kilobytes stay behind.
+ * Fails with WRONG_THREAD and NO_CONTEXT, and frees nothing then; see varikernel_context_abandon.
  */
 enum varikernel_status varikernel_pipeline_destroy(struct varikernel_pipeline *pipeline);
 

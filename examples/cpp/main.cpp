@@ -167,6 +167,11 @@ int main() {
     settings.min_photons = 20;
     settings.max_radius = 16;
 
+    // Step 5: what it takes, before anything is allocated.
+    uint64_t bytes = 0;
+    check(varikernel_memory_required(context, 160, 120, &settings, &bytes, nullptr), "asking for the memory");
+    std::printf("160 x 120 takes %d KiB\n", static_cast<int>(bytes / 1024));
+
     // Step 6: a pipeline for a size; all is allocated and compiled here.
     varikernel_pipeline *pipeline = nullptr;
     check(varikernel_pipeline_create(context, 160, 120, GL_R32F, &settings, &pipeline), "making a pipeline");

@@ -3,7 +3,7 @@
 use std::ffi::{CStr, c_char, c_void};
 use std::thread::{self, ThreadId};
 
-use super::{Failure, Status, answer, check_place, destroy, out_of_range};
+use super::{Failure, Status, answer, check_place, destroy, given, out_of_range};
 use crate::error::Error;
 use crate::gl::{Gl, StatePolicy};
 
@@ -21,35 +21,57 @@ pub const VARIKERNEL_STATE_RESTORE: u32 = 0;
 pub const VARIKERNEL_STATE_DEFAULTS: u32 = 1;
 
 /// An OpenGL context of the host: its commands, and what pipelines share.
-pub struct Context {
-    pub(super) home: Home,
-    pub(super) gl: Gl,
-}
+pub struct Context(pub(super) Home);
 
 type GetString = unsafe extern "system" fn(name: u32) -> *const u8;
 
-/// Where handles may be used.
-#[derive(Clone, Copy)]
+/// Where a handle may be used.
+#[derive(Clone)]
 pub(super) struct Home {
     thread: ThreadId,
     get_string: GetString,
+    gl: Gl,
 }
 
 impl Home {
-    /// Whether this is the thread, and a context is current on it.
-    pub(super) fn check(&self) -> Result<(), Failure> {
-        if thread::current().id() != self.thread {
-            let text = "the handle belongs to the thread that made it, and this is another";
-            return Err(Failure::new(Status::WrongThread, text));
+    /// OpenGL, if this is the thread, and the context is there.
+    pub(super) fn gl(&self) -> Result<&Gl, Failure> {
+        self.check_thread()?;
+        if self.gl.is_lost() {
+            return Err(Error::ContextLost.into());
         }
-        // SAFETY: glGetString takes any value; without a context it returns null.
-        if unsafe { (self.get_string)(glow::VERSION) }.is_null() {
-            let text = "no OpenGL context is current on this thread\nhelp: make the one current that the handle was \
-                        made in";
-            return Err(Failure::new(Status::NoContext, text));
-        }
+        check_current(self.get_string)?;
+        Ok(&self.gl)
+    }
+
+    /// Whether what belongs here can be freed: with OpenGL, or without it after the context has gone.
+    pub(super) fn check_drop(&self) -> Result<(), Failure> {
+        self.check_thread()?;
+        if self.gl.is_lost() { Ok(()) } else { check_current(self.get_string) }
+    }
+
+    fn abandon(&self) -> Result<(), Failure> {
+        self.check_thread()?;
+        self.gl.abandon();
         Ok(())
     }
+
+    fn check_thread(&self) -> Result<(), Failure> {
+        if thread::current().id() == self.thread {
+            return Ok(());
+        }
+        let text = "the handle belongs to the thread that made it, and this is another";
+        Err(Failure::new(Status::WrongThread, text))
+    }
+}
+
+fn check_current(get_string: GetString) -> Result<(), Failure> {
+    // SAFETY: glGetString takes any value; without a context it returns null.
+    if unsafe { get_string(glow::VERSION) }.is_null() {
+        let text = "no OpenGL context is current on this thread\nhelp: make the one current that the handle was made in";
+        return Err(Failure::new(Status::NoContext, text));
+    }
+    Ok(())
 }
 
 /// Takes the OpenGL context that is current on this thread, 3.3 core or newer; no extension is needed.
@@ -81,22 +103,48 @@ pub unsafe extern "C" fn varikernel_context_create(
         }
         // SAFETY: the host vouches that this is the address of glGetString, which has this type.
         let get_string = unsafe { std::mem::transmute::<*const c_void, GetString>(get_string) };
-        let home = Home { thread: thread::current().id(), get_string };
-        home.check()?;
-        // SAFETY: a context is current, and `Home::check` asks before each use whether one is.
+        check_current(get_string)?;
+        // SAFETY: a context is current, and `Home::gl` asks before each use whether one is.
         let gl = unsafe { Gl::from_loader(load) }?.with_state_policy(policy);
+        let home = Home { thread: thread::current().id(), get_string, gl };
         // SAFETY: the host gives a pointer to write to.
-        unsafe { context.write(Box::into_raw(Box::new(Context { home, gl }))) };
+        unsafe { context.write(Box::into_raw(Box::new(Context(home)))) };
         Ok(())
+    })
+}
+
+/// Tells the bytes of textures and buffers that the library holds by this handle and all that was made of it.
+///
+/// Fails with WRONG_THREAD, NO_CONTEXT, CONTEXT_LOST, INVALID_ARGUMENT.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn varikernel_memory_held(context: *const Context, bytes: *mut u64) -> Status {
+    answer(|| {
+        check_place(bytes, "bytes")?;
+        // SAFETY: the host gives a handle that was not destroyed, or null.
+        let gl = unsafe { given(context, "context") }?.0.gl()?;
+        // SAFETY: the host gives a pointer to write to.
+        unsafe { bytes.write(gl.texture_bytes() + gl.buffer_bytes()) };
+        Ok(())
+    })
+}
+
+/// Says that the OpenGL context has gone, or is about to: nothing made of this handle calls OpenGL from now on. Destroying
+/// then frees memory alone, and all other calls answer CONTEXT_LOST.
+///
+/// Fails with WRONG_THREAD, INVALID_ARGUMENT.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn varikernel_context_abandon(context: *const Context) -> Status {
+    answer(|| {
+        // SAFETY: the host gives a handle that was not destroyed, or null.
+        unsafe { given(context, "context") }?.0.abandon()
     })
 }
 
 /// Frees a context; null is fine. Pipelines made in it stay usable: the last of them frees what they share.
 ///
-/// Fails with WRONG_THREAD and NO_CONTEXT, and frees nothing then. Destroy before the OpenGL context goes: after it, the
-/// handle's few kilobytes stay behind.
+/// Fails with WRONG_THREAD and NO_CONTEXT, and frees nothing then; see varikernel_context_abandon.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn varikernel_context_destroy(context: *mut Context) -> Status {
     // SAFETY: the host gives a handle that `varikernel_context_create` made and that was not destroyed, or null.
-    unsafe { destroy(context, |context| &context.home) }
+    unsafe { destroy(context, |context| &context.0) }
 }

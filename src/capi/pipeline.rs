@@ -14,11 +14,7 @@ use crate::pipeline::RadiusPipeline;
 use crate::settings::Settings;
 
 /// Density map in, radius map out, for one size and one set of settings.
-pub struct Pipeline {
-    handle: Handle<Stages>,
-    format: TextureFormat,
-    settings: (Settings, bool),
-}
+pub struct Pipeline(Handle<Stages>);
 
 enum Stages {
     /// One order, for ever.
@@ -41,12 +37,59 @@ impl Stages {
         })
     }
 
+    fn resize(&mut self, size: UVec2) -> Result<(), Error> {
+        match self {
+            Self::Fixed(pipeline) => pipeline.resize(size),
+            Self::Adaptive(pipeline) => pipeline.resize(size),
+        }
+    }
+
     fn update(&mut self, frame: &Frame<'_>) -> Result<&RadiusMap, Error> {
         match self {
             Self::Fixed(pipeline) => pipeline.update(frame),
             Self::Adaptive(pipeline) => pipeline.update(frame),
         }
     }
+}
+
+/// Tells the memory that a pipeline takes, before it is made: bytes of textures and buffers, as large as their formats say.
+///
+/// `*at_creation` is what varikernel_pipeline_create and varikernel_pipeline_resize allocate; `*at_most` adds what is
+/// allocated on demand, by VARIKERNEL_CHANGED_ADDED and, for VARIKERNEL_ORDER_ADAPTIVE, by each order; the pointer may be
+/// null. `settings` may be null for the defaults.
+///
+/// Fails with SETTING, TOO_LARGE, INVALID_ARGUMENT, WRONG_THREAD, NO_CONTEXT, CONTEXT_LOST.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn varikernel_memory_required(
+    context: *const Context,
+    width: u32,
+    height: u32,
+    settings: *const PlainSettings,
+    at_creation: *mut u64,
+    at_most: *mut u64,
+) -> Status {
+    answer(|| {
+        check_place(at_creation, "at_creation")?;
+        // SAFETY: the host gives a handle that was not destroyed, or null.
+        let gl = unsafe { given(context, "context") }?.0.gl()?;
+        // SAFETY: the host gives settings or null.
+        let settings = unsafe { settings.as_ref() }.map(PlainSettings::read).transpose()?.unwrap_or_default();
+        let (device, size) = (gl.info(), UVec2::new(width, height));
+        let (required, of_orders) = match settings {
+            (settings, true) => {
+                let required = AdaptivePipeline::memory_required_on(device, size, &settings)?;
+                (required, required.other_orders)
+            }
+            (settings, false) => (RadiusPipeline::memory_required_on(device, size, &settings)?, 0),
+        };
+        if !at_most.is_null() {
+            // SAFETY: the host gives a pointer to write to, or null.
+            unsafe { at_most.write(required.at_creation + required.additions + of_orders) };
+        }
+        // SAFETY: the host gives a pointer to write to.
+        unsafe { at_creation.write(required.at_creation) };
+        Ok(())
+    })
 }
 
 /// Allocates and compiles for density maps of `width` x `height` pixels in `density_format`: GL_R32F, as additive blending
@@ -69,12 +112,12 @@ pub unsafe extern "C" fn varikernel_pipeline_create(
         check_place(pipeline, "pipeline")?;
         // SAFETY: the host gives a handle that was not destroyed, or null.
         let context = unsafe { given(context, "context") }?;
-        context.home.check()?;
+        let gl = context.0.gl()?;
         // SAFETY: the host gives settings or null.
         let settings = unsafe { settings.as_ref() }.map(PlainSettings::read).transpose()?.unwrap_or_default();
         let format = read_format(density_format)?;
-        let stages = Stages::new(&context.gl, UVec2::new(width, height), format, settings)?;
-        let made = Pipeline { handle: Handle::new(context, stages), format, settings };
+        let made =
+            Pipeline(Handle::new(context, Stages::new(gl, UVec2::new(width, height), format, settings)?));
         // SAFETY: the host gives a pointer to write to.
         unsafe { pipeline.write(Box::into_raw(Box::new(made))) };
         Ok(())
@@ -103,7 +146,7 @@ pub unsafe extern "C" fn varikernel_render(
         // SAFETY: the host gives a frame or null.
         let frame = unsafe { given(frame, "frame") }?;
         check_place(radius_texture, "radius_texture")?;
-        let (radius, limited) = pipeline.handle.with(|gl, stages| {
+        let (radius, limited) = pipeline.0.with(|gl, stages| {
             let (density, mask) = frame.borrow(gl)?;
             let changed = frame.read_changed()?;
             let radii = stages.update(&Frame { density: &density, mask: mask.as_ref(), changed })?;
@@ -121,9 +164,10 @@ pub unsafe extern "C" fn varikernel_render(
 }
 
 /// From now on for density maps of another size, with the same format and settings; the next frame starts from nothing.
-/// Textures of earlier frames are gone.
+/// Nothing is compiled. Textures of earlier frames are gone; the new ones are made before the old ones are freed.
 ///
-/// Fails as varikernel_pipeline_create, and the pipeline then goes on at its old size.
+/// Fails with SETTING, TOO_LARGE, OUT_OF_MEMORY, CONTEXT_LOST, OPEN_GL, INVALID_ARGUMENT, WRONG_THREAD, NO_CONTEXT, and the
+/// pipeline then goes on at its old size.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn varikernel_pipeline_resize(
     pipeline: *mut Pipeline,
@@ -133,21 +177,17 @@ pub unsafe extern "C" fn varikernel_pipeline_resize(
     answer(|| {
         // SAFETY: the host gives a handle that was not destroyed, or null.
         let pipeline = unsafe { given(pipeline, "pipeline") }?;
-        pipeline.handle.with(|gl, stages| {
-            *stages = Stages::new(gl, UVec2::new(width, height), pipeline.format, pipeline.settings)?;
-            Ok(())
-        })
+        pipeline.0.with(|_, stages| Ok(stages.resize(UVec2::new(width, height))?))
     })
 }
 
 /// Frees a pipeline with its textures; null is fine.
 ///
-/// Fails with WRONG_THREAD and NO_CONTEXT, and frees nothing then. Destroy before the OpenGL context goes: after it, the
-/// handle's few kilobytes stay behind.
+/// Fails with WRONG_THREAD and NO_CONTEXT, and frees nothing then; see varikernel_context_abandon.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn varikernel_pipeline_destroy(pipeline: *mut Pipeline) -> Status {
     // SAFETY: the host gives a handle that `varikernel_pipeline_create` made and that was not destroyed, or null.
-    unsafe { destroy(pipeline, |pipeline| pipeline.handle.home()) }
+    unsafe { destroy(pipeline, |pipeline| pipeline.0.home()) }
 }
 
 /// A format by the value of its GL enum.

@@ -31,9 +31,9 @@ pub enum Status {
     Inexact = 8,
     /// The driver refused a shader; the text has its log.
     Shader = 9,
-    /// GL_OUT_OF_MEMORY.
+    /// GL_OUT_OF_MEMORY; what was there before is as it was.
     OutOfMemory = 10,
-    /// GL_CONTEXT_LOST: destroy the handles, and make all anew in a new context.
+    /// The driver lost the context, or the host gave it up: destroy the handles, and make all anew in a new context.
     ContextLost = 11,
     /// Another GL error; the text names it.
     OpenGl = 12,
@@ -62,11 +62,9 @@ impl From<Error> for Failure {
             Error::Mismatch { .. } => Status::Mismatch,
             Error::Version { .. } => Status::Version,
             Error::Shader { .. } => Status::Shader,
-            Error::Gl { code, .. } => match code.as_str() {
-                "GL_OUT_OF_MEMORY" => Status::OutOfMemory,
-                "GL_CONTEXT_LOST" => Status::ContextLost,
-                _ => Status::OpenGl,
-            },
+            Error::OutOfMemory { .. } => Status::OutOfMemory,
+            Error::ContextLost => Status::ContextLost,
+            Error::Gl { .. } => Status::OpenGl,
             Error::NoContext(_) => Status::NoContext,
             // Nothing here reads files, lets a caller name uniforms or needs a query.
             Error::File { .. } | Error::UnknownUniform { .. } | Error::QueryRunning { .. } => {

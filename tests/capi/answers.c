@@ -112,6 +112,12 @@ static void left_state(varikernel_pipeline *pipeline, GLuint density, uint32_t s
     glDisable(GL_CULL_FACE);
 }
 
+static uint64_t held(const varikernel_context *context) {
+    uint64_t bytes = 0;
+    EXPECT_OK(varikernel_memory_held(context, &bytes));
+    return bytes;
+}
+
 static void all_orders(uint32_t state_policy) {
     varikernel_context *context = NULL;
     varikernel_settings settings;
@@ -124,13 +130,21 @@ static void all_orders(uint32_t state_policy) {
     settings.limited_mask = 1;
     for (order = VARIKERNEL_ORDER_BRACKETED; order <= VARIKERNEL_ORDER_ADAPTIVE; order++) {
         const GLuint density = texture_of_bytes(SIDE, SIDE, first_photon[0]);
+        const uint64_t before = held(context);
+        uint64_t at_creation = 0, at_most = 0;
         varikernel_pipeline *pipeline = NULL;
         settings.order = order;
+        EXPECT_OK(varikernel_memory_required(context, SIDE, SIDE, &settings, &at_creation, &at_most));
+        EXPECT_TRUE(held(context) == before && at_creation < at_most);
         EXPECT_OK(varikernel_pipeline_create(context, SIDE, SIDE, GL_R8UI, &settings, &pipeline));
+        EXPECT_TRUE(held(context) == before + at_creation);
         frames(pipeline, density);
+        /* Photons were added, which takes the rest; orders were chosen or not. */
+        EXPECT_TRUE(order == VARIKERNEL_ORDER_ADAPTIVE ? held(context) <= before + at_most : held(context) == before + at_most);
         masked_frame(context, settings, density);
         left_state(pipeline, density, state_policy);
         EXPECT_OK(varikernel_pipeline_destroy(pipeline));
+        EXPECT_TRUE(held(context) == before);
         glDeleteTextures(1, &density);
     }
     EXPECT_OK(varikernel_context_destroy(context));

@@ -170,6 +170,7 @@ static void *elsewhere(void *unused) {
     EXPECT(varikernel_pipeline_resize(pipeline, 1, 1), VARIKERNEL_STATUS_WRONG_THREAD, "thread");
     EXPECT(varikernel_pipeline_destroy(pipeline), VARIKERNEL_STATUS_WRONG_THREAD, "thread");
     EXPECT(varikernel_context_destroy(context), VARIKERNEL_STATUS_WRONG_THREAD, "thread");
+    EXPECT(varikernel_context_abandon(context), VARIKERNEL_STATUS_WRONG_THREAD, "thread");
     return unused;
 }
 
@@ -193,6 +194,41 @@ static void wrong_sizes(void) {
     EXPECT(render(), VARIKERNEL_STATUS_MISMATCH, "5 x 4");
 }
 
+static void wrong_memory(void) {
+    uint64_t bytes = 12345;
+    settings.order = VARIKERNEL_ORDER_BRACKETED;
+    EXPECT(varikernel_memory_required(NULL, SIDE, SIDE, NULL, &bytes, NULL), VARIKERNEL_STATUS_INVALID_ARGUMENT,
+           "context is null");
+    EXPECT(varikernel_memory_required(context, SIDE, SIDE, NULL, NULL, &bytes), VARIKERNEL_STATUS_INVALID_ARGUMENT,
+           "at_creation is null");
+    EXPECT(varikernel_memory_required(context, 1u << 20, SIDE, NULL, &bytes, NULL), VARIKERNEL_STATUS_TOO_LARGE, "1048576");
+    EXPECT(varikernel_memory_required(context, 0, SIDE, NULL, &bytes, NULL), VARIKERNEL_STATUS_SETTING, "size");
+    settings.max_radius = 0;
+    EXPECT(varikernel_memory_required(context, SIDE, SIDE, &settings, &bytes, NULL), VARIKERNEL_STATUS_SETTING, "max_radius");
+    settings.max_radius = 32;
+    EXPECT(varikernel_memory_held(NULL, &bytes), VARIKERNEL_STATUS_INVALID_ARGUMENT, "context is null");
+    EXPECT(varikernel_memory_held(context, NULL), VARIKERNEL_STATUS_INVALID_ARGUMENT, "bytes is null");
+    EXPECT_TRUE(bytes == 12345);
+}
+
+/* After the context has gone, or is said to have, nothing but freeing is possible. */
+static void abandoned(const headless *host) {
+    uint64_t bytes = 0;
+    EXPECT_OK(varikernel_context_create(headless_loader, NULL, VARIKERNEL_STATE_RESTORE, &context));
+    EXPECT_OK(varikernel_pipeline_create(context, SIDE, SIDE, GL_R8UI, NULL, &pipeline));
+    EXPECT(varikernel_context_abandon(NULL), VARIKERNEL_STATUS_INVALID_ARGUMENT, "context is null");
+    EXPECT_OK(render());
+    EXPECT_OK(varikernel_context_abandon(context));
+    EXPECT(render(), VARIKERNEL_STATUS_CONTEXT_LOST, "help:");
+    EXPECT(make(SIDE, SIDE, GL_R8UI), VARIKERNEL_STATUS_CONTEXT_LOST, "help:");
+    EXPECT(varikernel_pipeline_resize(pipeline, 1, 1), VARIKERNEL_STATUS_CONTEXT_LOST, "help:");
+    EXPECT(varikernel_memory_held(context, &bytes), VARIKERNEL_STATUS_CONTEXT_LOST, "help:");
+    EXPECT_TRUE(headless_make_current(host, 0));
+    EXPECT_OK(varikernel_pipeline_destroy(pipeline));
+    EXPECT_OK(varikernel_context_destroy(context));
+    EXPECT_TRUE(headless_make_current(host, 1) && glIsTexture(radii));
+}
+
 int main(void) {
     headless host;
     pthread_t thread;
@@ -203,6 +239,7 @@ int main(void) {
     contexts(&host);
     wrong_settings();
     wrong_frames();
+    wrong_memory();
     EXPECT_TRUE(pthread_create(&thread, NULL, elsewhere, NULL) == 0 && pthread_join(thread, NULL) == 0);
     without_context(&host);
     /* A pipeline outlives the handle that it was made with. */
@@ -213,6 +250,7 @@ int main(void) {
     EXPECT_TRUE(!glIsTexture(radii));
     EXPECT_OK(varikernel_pipeline_destroy(NULL));
     EXPECT_OK(varikernel_context_destroy(NULL));
+    abandoned(&host);
     headless_close(&host);
     printf("%d failures\n", failures);
     return failures != 0;

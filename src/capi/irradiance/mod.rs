@@ -50,11 +50,11 @@ pub unsafe extern "C" fn varikernel_irradiance_create(
         check_place(irradiance, "irradiance")?;
         // SAFETY: the host gives a handle that was not destroyed, or null.
         let context = unsafe { given(context, "context") }?;
-        context.home.check()?;
+        let gl = context.0.gl()?;
         // SAFETY: the host gives settings or null.
         let settings = unsafe { settings.as_ref() }.map(PlainIrradianceSettings::read).transpose()?;
         let (settings, has_depth) = settings.unwrap_or_default();
-        let (gl, size) = (&context.gl, UVec2::new(width, height));
+        let size = UVec2::new(width, height);
         let pipeline = Box::new(IrradiancePipeline::new(gl, size, settings)?);
         let positions = if has_depth { Positions::FromDepth(None) } else { Positions::Given };
         let made = Irradiance(Handle::new(context, Stages { size, pipeline, positions }));
