@@ -30,6 +30,7 @@
 //! # Ok(())
 //! # }
 //! ```
+//! From C and C++, the feature `capi` gives the same by `include/varikernel.h`; `examples/cpp` is a host.
 //! Without a host, `context::open` (features `egl` and `osmesa`) makes a headless context.
 //!
 //! # The idea that keeps it small
@@ -43,6 +44,7 @@
 //! | module | what it holds |
 //! |---|---|
 //! | `cli`, `main` | the program, built on the public library: one file a verb |
+//! | `capi` | the C interface of `include/varikernel.h`: handles, plain structs, status codes |
 //! | [`measure`] | how right and how fast a result is: differences, errors of pictures, timing runs (`bench`), rivals on the processor (`rivals`), the thesis's tables and claims (`thesis`), both together (`reproduce`), a page of them (`report`), run time against error (`study`), promises about numbers put to the test (`stress`) |
 //! | `render` | scene in, picture out: the stages of a picture in order, soft shadows, what is seen in mirrors and through glass |
 //! | `bounce_map`, `gbuffer`, `shadow_map`, `density`, `splat`, `shade` | a stage of a picture each: what photons meet first, what pixels show, direct light, photons counted, kernels drawn, light added up |
@@ -63,7 +65,7 @@
 //! | `scene` | scene files: camera, lights, materials, triangles and spheres; ray casting |
 //! | `synth` | seeded test maps |
 //! | `context` | headless contexts: EGL devices and OSMesa |
-//! | [`gl`] | programs, textures, passes, timers, saved state; with `context` the only unsafe code |
+//! | [`gl`] | programs, textures, passes, timers, saved state; with `context` and `capi` the only unsafe code |
 //! | [`settings`], [`image`], [`error`] | plain data that every module may name |
 //!
 //! # The host's OpenGL state
@@ -99,6 +101,8 @@
 mod adaptive;
 #[cfg(feature = "render")]
 mod bounce_map;
+#[cfg(feature = "capi")]
+mod capi;
 pub mod certificate;
 #[cfg(any(feature = "egl", feature = "osmesa"))]
 pub mod context;
