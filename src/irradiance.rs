@@ -12,7 +12,7 @@ use crate::error::Result;
 use crate::frame::Frame;
 use crate::gl::{Gl, ShaderSource, StateGuard, Targets, TextureFormat, bytes_of};
 use crate::maps::{ChosenRadius, DensityMap, IrradianceMap, PhotonPoints, RadiusMap, SurfaceMaps};
-use crate::pipeline::RadiusPipeline;
+use crate::pipeline::{RadiusPipeline, check_fits};
 use crate::settings::{IrradianceSettings, Kernel, RadiusChoice};
 use crate::splat::{self, SplatStage};
 
@@ -39,6 +39,7 @@ impl IrradiancePipeline {
     /// out.
     pub fn new(gl: &Gl, size: UVec2, settings: IrradianceSettings) -> Result<Self> {
         settings.validate()?;
+        check_fits(gl.info(), size)?;
         let fixed = matches!(settings.radius, RadiusChoice::Fixed(_));
         let radii = || RadiusPipeline::new(gl, size, TextureFormat::R32Float, settings.search);
         Ok(Self {
@@ -72,6 +73,7 @@ impl IrradiancePipeline {
         if size == self.density.map().size() {
             return self.gl.current().map(drop);
         }
+        check_fits(self.gl.info(), size)?;
         let state = StateGuard::new(&self.gl);
         let mut shapes = vec![DensityStage::shape(size)];
         shapes.extend(SplatStage::shapes(size));

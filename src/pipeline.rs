@@ -4,6 +4,7 @@ mod size;
 
 use glam::UVec2;
 pub use size::MemoryRequired;
+pub(crate) use size::check_fits;
 
 use crate::certificate::{self, Certificate, Certifier};
 use crate::driver_limits;
@@ -67,7 +68,7 @@ impl RadiusPipeline {
     pub fn new(gl: &Gl, size: UVec2, density_format: TextureFormat, settings: Settings) -> Result<Self> {
         settings.validate()?;
         let passes = driver_limits::passes(gl.info(), &settings)?;
-        size::check_fits(gl.info(), size)?;
+        check_fits(gl.info(), size)?;
         let _state = StateGuard::new(gl);
         let pipeline = Self {
             gl: gl.clone(),

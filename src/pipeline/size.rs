@@ -109,7 +109,7 @@ impl RadiusPipeline {
 }
 
 /// Refuses maps that the device has no textures for.
-pub(super) fn check_fits(device: &DeviceInfo, size: UVec2) -> Result<()> {
+pub(crate) fn check_fits(device: &DeviceInfo, size: UVec2) -> Result<()> {
     let limit = device.max_texture_size;
     if size.max_element() > limit {
         return Err(Error::TooLarge { size, limit });

@@ -80,6 +80,12 @@ static double power(void) {
     return sum;
 }
 
+static uint64_t held(void) {
+    uint64_t bytes = 0;
+    EXPECT_OK(varikernel_memory_held(context, &bytes));
+    return bytes;
+}
+
 static varikernel_status make(void) {
     varikernel_irradiance *made = NULL;
     const varikernel_status status = varikernel_irradiance_create(context, SIDE, SIDE, &settings, &made);
@@ -153,12 +159,18 @@ static void statuses(const headless *host) {
     const varikernel_status invalid = VARIKERNEL_STATUS_INVALID_ARGUMENT, setting = VARIKERNEL_STATUS_SETTING;
     const varikernel_status mismatch = VARIKERNEL_STATUS_MISMATCH;
     GLuint colours = 0, name = 0;
+    uint64_t bytes = 0;
     EXPECT(varikernel_irradiance_settings_default(NULL, sizeof settings), invalid, "settings is null");
     EXPECT(varikernel_irradiance_settings_default(&settings, 4), invalid, "4 bytes");
     EXPECT(varikernel_irradiance_frame_default(NULL, sizeof frame), invalid, "frame is null");
     EXPECT(varikernel_irradiance_frame_default(&frame, 4), invalid, "4 bytes");
     EXPECT(varikernel_irradiance_create(NULL, SIDE, SIDE, NULL, &irradiance), invalid, "context is null");
     EXPECT(varikernel_irradiance_create(context, SIDE, SIDE, NULL, NULL), invalid, "irradiance is null");
+    EXPECT(varikernel_irradiance_memory_required(SIDE, SIDE, NULL, NULL), invalid, "bytes is null");
+    EXPECT(varikernel_irradiance_memory_required(SIDE, 0, NULL, &bytes), setting, "size");
+    EXPECT(varikernel_irradiance_resize(NULL, SIDE, SIDE), invalid, "irradiance is null");
+    EXPECT(varikernel_irradiance_resize(irradiance, 0, SIDE), setting, "size");
+    EXPECT(varikernel_irradiance_resize(irradiance, 1u << 20, SIDE), VARIKERNEL_STATUS_TOO_LARGE, "1048576");
     EXPECT(varikernel_irradiance_render(NULL, &frame, &name, NULL), invalid, "irradiance is null");
     EXPECT(varikernel_irradiance_render(irradiance, NULL, &name, NULL), invalid, "frame is null");
     EXPECT(varikernel_irradiance_render(irradiance, &frame, NULL, NULL), invalid, "irradiance_texture is null");
@@ -193,6 +205,22 @@ static void statuses(const headless *host) {
     EXPECT_OK(render());
 }
 
+/* What another size takes is known before, and the size of the textures comes back. */
+static void sizes(void) {
+    uint64_t small = 0, large = 0, before;
+    GLuint name = 0;
+    EXPECT_OK(make());
+    EXPECT_OK(varikernel_irradiance_memory_required(SIDE, SIDE, &settings, &small));
+    EXPECT_OK(varikernel_irradiance_memory_required(2 * SIDE, 2 * SIDE, &settings, &large));
+    EXPECT_TRUE(large > small);
+    before = held();
+    EXPECT_OK(varikernel_irradiance_resize(irradiance, 2 * SIDE, 2 * SIDE));
+    EXPECT_TRUE(held() - before == large - small);
+    EXPECT(varikernel_irradiance_render(irradiance, &frame, &name, NULL), VARIKERNEL_STATUS_MISMATCH, "64 x 64");
+    EXPECT_OK(varikernel_irradiance_resize(irradiance, SIDE, SIDE));
+    EXPECT_OK(varikernel_irradiance_render(irradiance, &frame, &name, NULL));
+}
+
 int main(void) {
     headless host;
     GLuint positions = 0, normals = 0, depth = 0, buffer = 0;
@@ -213,6 +241,7 @@ int main(void) {
     memcpy(frame.view, identity, sizeof identity);
     memcpy(frame.projection, projection, sizeof projection);
     answers(positions, depth);
+    sizes();
     statuses(&host);
     EXPECT_OK(varikernel_irradiance_destroy(irradiance));
     EXPECT_OK(varikernel_irradiance_destroy(NULL));

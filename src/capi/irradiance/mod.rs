@@ -34,8 +34,7 @@ struct Stages {
 
 /// Allocates and compiles for surfaces of `width` x `height` pixels. Takes milliseconds to seconds; frames only draw.
 ///
-/// `*irradiance` is the host's to destroy, before or after `context`. `settings` may be null for the defaults. For another
-/// size, destroy it and make another.
+/// `*irradiance` is the host's to destroy, before or after `context`. `settings` may be null for the defaults.
 ///
 /// Fails with SETTING, TOO_LARGE, SHADER, OUT_OF_MEMORY, OPEN_GL, INVALID_ARGUMENT, WRONG_THREAD, NO_CONTEXT.
 #[unsafe(no_mangle)]
@@ -108,6 +107,54 @@ pub unsafe extern "C" fn varikernel_irradiance_render(
         // SAFETY: the host gives a pointer to write to.
         unsafe { irradiance_texture.write(light.0.get()) };
         Ok(())
+    })
+}
+
+/// Tells the memory that irradiance takes, before the handle is made: bytes of textures and buffers, as large as their formats
+/// say; surfaces, the positions of a depth buffer (16 bytes a pixel) and photons apart. `settings` may be null for the defaults.
+///
+/// Fails with SETTING, INVALID_ARGUMENT.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn varikernel_irradiance_memory_required(
+    width: u32,
+    height: u32,
+    settings: *const PlainIrradianceSettings,
+    bytes: *mut u64,
+) -> Status {
+    answer(|| {
+        check_place(bytes, "bytes")?;
+        // SAFETY: the host gives settings or null.
+        let settings = unsafe { settings.as_ref() }.map(PlainIrradianceSettings::read).transpose()?;
+        let (settings, _) = settings.unwrap_or_default();
+        let required = IrradiancePipeline::memory_required(UVec2::new(width, height), &settings)?;
+        // SAFETY: the host gives a pointer to write to.
+        unsafe { bytes.write(required) };
+        Ok(())
+    })
+}
+
+/// From now on for surfaces of another size, without photons. As varikernel_pipeline_resize.
+///
+/// Fails with SETTING, TOO_LARGE, OUT_OF_MEMORY, CONTEXT_LOST, OPEN_GL, INVALID_ARGUMENT, WRONG_THREAD, NO_CONTEXT, and the
+/// handle then goes on at its old size.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn varikernel_irradiance_resize(
+    irradiance: *mut Irradiance,
+    width: u32,
+    height: u32,
+) -> Status {
+    answer(|| {
+        // SAFETY: the host gives a handle that was not destroyed, or null.
+        let irradiance = unsafe { given(irradiance, "irradiance") }?;
+        irradiance.0.with(|_, stages| {
+            let size = UVec2::new(width, height);
+            stages.pipeline.resize(size)?;
+            stages.size = size;
+            if let Positions::FromDepth(made) = &mut stages.positions {
+                *made = None;
+            }
+            Ok(())
+        })
     })
 }
 
