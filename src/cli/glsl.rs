@@ -21,6 +21,7 @@ use super::{Outcome, output};
 /// For those who bring their own engine code. Conditions are decided and defines put in; the options choose the variant, as
 /// they do for `radius` and `render`. No OpenGL is needed.
 #[derive(Debug, clap::Args)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
 pub(crate) struct Args {
     /// A shader of the list, for example radius-search/inner.
     #[arg(required_unless_present_any = ["list", "output"])]

@@ -143,7 +143,7 @@ fn files_are_written_one_or_all_of_a_variant() {
     let tables: serde_json::Value = serde_json::from_slice(&place.bytes("all/shaders.json")).unwrap();
     assert_eq!(tables["shaders"].as_array().unwrap().len(), shaders);
 
-    let sources: Vec<_> = written.lines().filter(|name| !name.ends_with(".json")).collect();
+    let sources: Vec<_> = written.lines().filter(|name| !name.contains("shaders.json")).collect();
     let checked =
         Tool::new("glslangValidator").args(&sources).current_dir(place.folder.path()).output().unwrap();
     assert!(checked.status.success(), "{}", String::from_utf8_lossy(&checked.stdout));
