@@ -1,7 +1,10 @@
 // One for each photon, and its power; blending adds them up.
+
 flat in vec3 power;
 
+// Photons of the pixel.
 layout(location = 0) out float count;
+// Their power, red, green and blue; a: their count.
 layout(location = 1) out vec4 power_and_count;
 
 void main()

@@ -1,7 +1,11 @@
 // The other way round: each pixel gathers the power of the pixels around it with its own radius.
+
+// Power of each pixel's photons, red, green and blue; a: their count.
 uniform sampler2D power;
+// From scene units to clip space, with row 0 of the picture at the bottom.
 uniform mat4 to_clip;
 
+// Irradiance: red, green and blue, in power per square of a scene unit; a: photons found.
 layout(location = 0) out vec4 irradiance_and_found;
 
 void main()

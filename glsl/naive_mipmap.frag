@@ -1,12 +1,19 @@
 // Up one column of the pyramid until a texel holds enough (thesis 3.3.1, Figure 3.3).
 // The texel's block is not centred on the pixel: that is the fault which the thesis shows.
+
+// The mipmap of sums.
 uniform SUM_SAMPLER pyramid;
+// The mipmap's last level.
 uniform int top_level;
+// Columns and rows of the map, in pixels.
 uniform ivec2 map_size;
+// MR, in pixels.
 uniform int max_radius;
 
+// The radius in pixels; 0 where the mask asks for none.
 layout(location = 0) out uint radius;
 #ifdef LIMITED_MASK
+// 1 where MR ended the search with too few photons, else 0.
 layout(location = 1) out uint limited;
 #endif
 

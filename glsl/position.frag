@@ -1,15 +1,18 @@
 // Place and depth along the view of what a host's depth buffer shows.
+
 // Window-space depth, from 0 to 1.
 uniform sampler2D depth;
 // From clip space to scene units.
 uniform mat4 from_clip;
-// The pinhole, in scene units, and the way it looks, of length 1.
+// The pinhole, in scene units.
 uniform vec3 camera;
+// Unit vector along which depth is measured.
 uniform vec3 view_direction;
 // Window-space depth where nothing is seen.
 uniform float farthest;
-// Clip-space depth is this times window-space depth, less the next.
+// Clip-space depth is this times window-space depth, less the shift.
 uniform float depth_scale;
+// What is taken off.
 uniform float depth_shift;
 
 // Place in scene units; w: depth along the view, 0 where nothing is seen.

@@ -1,24 +1,30 @@
 // The smallest radius whose box holds enough photons (thesis 1.3, 3.5).
 // Follows a counter that defines: uint count_in_box(ivec2 lo, ivec2 hi), both corners included and inside the map
 // (BOX_UNCLIPPED: as they come, for a counter that clips by itself).
+
+// Columns and rows of the map, in pixels.
 uniform ivec2 map_size;
+// MR, in pixels.
 uniform int max_radius;
 #ifdef ORDER_FORWARD
-// The radii that this pass tries; one pass tries all unless the renderer limits loops.
+// The first radius that this pass tries, in pixels; one pass tries all unless the renderer limits loops.
 uniform int first_radius;
+// The last radius that it tries, in pixels.
 uniform int last_radius;
 #endif
 #ifdef CONTINUED
-// What the passes over smaller radii found, 0 where they found nothing.
+// What the passes over smaller radii found, in pixels, 0 where they found nothing.
 uniform usampler2D found_before;
 #endif
 #ifdef ORDER_BRACKETED
-// The smallest and the largest radius that any pixel of a block can have.
+// Radii that the pixels of a block can have: the smallest in the lower 16 bits, the largest in the upper.
 uniform usampler2D brackets;
 #endif
 
+// The radius in pixels; 0 where the mask asks for none.
 layout(location = 0) out uint radius;
 #ifdef LIMITED_MASK
+// 1 where MR ended the search with too few photons, else 0.
 layout(location = 1) out uint limited;
 #endif
 

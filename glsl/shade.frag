@@ -1,14 +1,19 @@
 // Indirect light from diffuse surfaces, and the whole picture: radiance towards the camera.
+
+// Irradiance by photons: red, green and blue, in power per square of a scene unit.
 uniform sampler2D irradiance;
 // What the irradiance is multiplied with: 1, or one over the parts that it was added up of.
 uniform float scale;
+// Share of light that the surface reflects: red, green and blue, 0 to 1.
 uniform sampler2D albedo;
-// Radiance; a: 1 where the pixel shows a diffuse surface, 0 where it shows mirrors, glass, lights or nothing.
+// Radiance of direct light; a: 1 where the pixel shows a diffuse surface, 0 where it shows mirrors, glass, lights or nothing.
 uniform sampler2D direct;
 // Radiance of indirect light that is seen in mirrors and through glass.
 uniform sampler2D seen_through;
 
+// Radiance of all light.
 layout(location = 0) out vec4 beauty;
+// Radiance of indirect light alone.
 layout(location = 1) out vec4 indirect;
 
 void main()

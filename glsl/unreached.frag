@@ -1,8 +1,12 @@
 // Pixels whose box of radius MR holds too few.
+
+// MR, in pixels.
 uniform int max_radius;
 
+// MR; 0 where the mask asks for no radius.
 layout(location = 0) out uint radius;
 #ifdef LIMITED_MASK
+// 1; 0 where the mask asks for no radius.
 layout(location = 1) out uint limited;
 #endif
 

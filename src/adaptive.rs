@@ -171,6 +171,7 @@ fn with_census(size: UVec2, pipeline: MemoryRequired) -> MemoryRequired {
 }
 
 fn census_source(density: TextureFormat, settings: &Settings) -> ShaderSource {
-    let source = ShaderSource::new(CENSUS).define("CENSUS_SIDE", CENSUS_SIDE);
+    let source =
+        ShaderSource::new(CENSUS).targets([TextureFormat::R32Uint]).define("CENSUS_SIDE", CENSUS_SIDE);
     structure::counter(source, density, settings).file(glsl!("census.frag"))
 }

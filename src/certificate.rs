@@ -182,6 +182,7 @@ pub(crate) fn sources(density: TextureFormat, settings: &Settings) -> Vec<Shader
 
 fn radii_source(density: TextureFormat, settings: &Settings, with_limited: bool) -> ShaderSource {
     let source = ShaderSource::new(RADII)
+        .variant_if(with_limited, "limited")
         .define_if(settings.search.edges == Edges::Zero, "EDGES_ZERO")
         .define_if(exactness::needs_wide_products(settings), "WIDE_PRODUCTS")
         .define_if(with_limited, "LIMITED_MASK")

@@ -165,9 +165,11 @@ fn cubes(scene: &Scene) -> Vec<CubeCorner> {
 pub(crate) fn sources() -> [ShaderSource; 2] {
     [
         ShaderSource::new(TRIANGLES)
+            .targets([TextureFormat::R32Uint])
             .vertex_file(glsl!("surfaces/triangles.vert"))
             .file(glsl!("cube_map/triangles.frag")),
         ShaderSource::new(SPHERES)
+            .targets([TextureFormat::R32Uint])
             .define("PRIMITIVES", 1_u32)
             .vertex_file(glsl!("surfaces/spheres.vert"))
             .file(glsl!("surfaces/spheres.frag")),

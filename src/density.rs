@@ -152,6 +152,7 @@ impl DensityStage {
 /// The shaders that the stage compiles.
 pub(crate) fn source() -> ShaderSource {
     ShaderSource::new(LABEL)
+        .targets([TextureFormat::R32Float, TextureFormat::Rgba32Float])
         .vertex_file(glsl!("common/surfaces.glsl"))
         .vertex_file(glsl!("common/photon.glsl"))
         .vertex_file(glsl!("density.vert"))

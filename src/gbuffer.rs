@@ -10,7 +10,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::{Vec3, Vec4};
 
 use crate::error::Result;
-use crate::gl::{Gl, Pass, Program, ShaderSource, StateGuard, Vertices, glsl};
+use crate::gl::{Gl, Pass, Program, ShaderSource, StateGuard, TextureFormat, Vertices, glsl};
 use crate::maps::SurfaceMaps;
 use crate::scene::{Scattering, Scene};
 use crate::view::View;
@@ -114,9 +114,11 @@ fn cubes(scene: &Scene) -> Vec<CubeCorner> {
 pub(crate) fn sources() -> [ShaderSource; 2] {
     [
         ShaderSource::new(TRIANGLES)
+            .targets([TextureFormat::Rgba32Float; 3])
             .vertex_file(glsl!("surfaces/triangles.vert"))
             .file(glsl!("surfaces/triangles.frag")),
         ShaderSource::new(SPHERES)
+            .targets([TextureFormat::Rgba32Float; 3])
             .vertex_file(glsl!("surfaces/spheres.vert"))
             .file(glsl!("surfaces/spheres.frag")),
     ]

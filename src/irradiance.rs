@@ -154,12 +154,20 @@ impl IrradiancePipeline {
 /// Every shader that photons become irradiance by, beside those of the radius map: density, splats and gathers of all kernels.
 #[must_use]
 pub fn shader_sources() -> Vec<ShaderSource> {
-    let mut sources = vec![density::source()];
-    for kernel in Kernel::ALL {
-        for fixed in [false, true] {
-            sources.extend(splat::sources(kernel, fixed));
-            sources.extend([false, true].map(|correct| splat::gather_source(kernel, fixed, correct)));
-        }
-    }
-    sources
+    let kernels = Kernel::ALL.into_iter().flat_map(|kernel| [(kernel, false), (kernel, true)]);
+    let spreads = kernels.flat_map(|(kernel, fixed)| spread_sources(kernel, fixed));
+    std::iter::once(density_source()).chain(spreads).collect()
+}
+
+/// The shader that counts photons.
+#[must_use]
+pub fn density_source() -> ShaderSource {
+    density::source()
+}
+
+/// The shaders of splats and gathers by one kernel, whose radii are variable or fixed.
+#[must_use]
+pub fn spread_sources(kernel: Kernel, fixed: bool) -> Vec<ShaderSource> {
+    let gathers = [false, true].map(|correct| splat::gather_source(kernel, fixed, correct));
+    splat::sources(kernel, fixed).into_iter().chain(gathers).collect()
 }

@@ -120,11 +120,14 @@ pub struct RadiusMap {
 impl RadiusMap {
     /// The planes of a map, a second one for the mask if wanted.
     pub(crate) fn shape(size: UVec2, limited_mask: bool) -> TargetShape {
-        let mut shape = vec![TextureShape::new("radius map", TextureFormat::R32Uint, size)];
-        if limited_mask {
-            shape.push(TextureShape::new("limited pixels", TextureFormat::R8Uint, size));
-        }
-        shape
+        let planes = ["radius map", "limited pixels"].into_iter().zip(Self::formats(limited_mask));
+        planes.map(|(label, format)| TextureShape::new(label, format, size)).collect()
+    }
+
+    /// The formats of its planes.
+    pub(crate) fn formats(limited_mask: bool) -> impl Iterator<Item = TextureFormat> {
+        let limited = limited_mask.then_some(TextureFormat::R8Uint);
+        std::iter::once(TextureFormat::R32Uint).chain(limited)
     }
 
     /// The map that a target of such a shape is.
@@ -143,8 +146,7 @@ impl RadiusMap {
         let mut textures = vec![Texture::borrow(gl, radii)?];
         textures.extend(limited.map(|limited| Texture::borrow(gl, limited)).transpose()?);
         let size = textures[0].size();
-        let formats = [TextureFormat::R32Uint, TextureFormat::R8Uint];
-        for (texture, format) in textures.iter().zip(formats) {
+        for (texture, format) in textures.iter().zip(Self::formats(true)) {
             if (texture.size(), texture.format()) != (size, format) {
                 return Err(Error::Mismatch {
                     what: "host's radius map",

@@ -129,5 +129,8 @@ fn primitives(scene: &Scene) -> Image<[f32; 4]> {
 }
 
 pub(crate) fn source() -> ShaderSource {
-    ShaderSource::new(LABEL).file(glsl!("shadow_map/between.glsl")).file(glsl!("shadow_map/light.frag"))
+    ShaderSource::new(LABEL)
+        .targets([TextureFormat::Rgba32Float])
+        .file(glsl!("shadow_map/between.glsl"))
+        .file(glsl!("shadow_map/light.frag"))
 }

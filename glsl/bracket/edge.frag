@@ -1,6 +1,9 @@
 // The radii that a block's pixels can have, where counts may be scaled: both bounds are searched.
+
+// Brackets of the blocks that these lie in, as `bracket`.
 uniform usampler2D wider;
 
+// The smallest radius in the lower 16 bits, the largest in the upper; in pixels.
 layout(location = 0) out uint bracket;
 
 void main()

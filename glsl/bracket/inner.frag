@@ -1,7 +1,10 @@
 // The radii that a block's pixels can have, where no edge is in reach: in as many steps for each block, without a loop
 // or a branch.
+
+// Brackets of the blocks that these lie in, as `bracket`.
 uniform usampler2D wider;
 
+// The smallest radius in the lower 16 bits, the largest in the upper; in pixels.
 layout(location = 0) out uint bracket;
 
 void main()

@@ -1,17 +1,23 @@
-// The radii that a tile's pixels can have, and the class of passes that find them.
-// MR, or MR + 1 where "not even MR" is to be told from MR.
+// The radii that a tile's pixels can have, and the class of programs that find them.
+
+// MR, or MR + 1 where "not even MR" is to be told from MR; in pixels.
 uniform int last_radius;
 #ifdef MASKED
+// Not 0 where a tile has pixels that need a radius.
 uniform usampler2D tile_mask;
 #endif
 #ifdef CHANGED
-// What the frame before found, and where counts differ from it: `changed_first` to before `changed_end`.
+// Brackets of the tiles in the frame before.
 uniform usampler2D brackets_before;
+// The first column and row whose counts differ from that frame's, in pixels.
 uniform ivec2 changed_first;
+// The column and row after the last of them.
 uniform ivec2 changed_end;
 #endif
 
+// The smallest radius in the lower 16 bits, the largest in the upper; in pixels.
 layout(location = 0) out uint bracket;
+// Which programs find the tile's radii: one of CLASS_...
 layout(location = 1) out uint tile_class;
 
 void main()

@@ -1,7 +1,11 @@
 // The table of all photons: that of those before, and that of those added.
+
+// The table of the photons before.
 uniform SUM_SAMPLER before;
+// The table of the photons that are added.
 uniform SUM_SAMPLER added;
 
+// Photons up to and with this column and row.
 layout(location = 0) out SUM sum;
 
 void main()

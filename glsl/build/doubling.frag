@@ -1,11 +1,17 @@
 // One doubling pass of a summed-area table: SAMPLES sums of `stride` texels become one (thesis 3.4.1, 4.2).
+
+// The sums so far.
 uniform SUM_SAMPLER table;
+// (1, 0) along rows, (0, 1) along columns.
 uniform ivec2 axis;
+// Texels whose sum each texel holds so far along the axis.
 uniform int stride;
 #ifdef FAULT_SAMPLE_STRIDE
+// The first offset as printed, in texels.
 uniform int printed_offset;
 #endif
 
+// The sum of SAMPLES times as many texels.
 layout(location = 0) out SUM sum;
 
 SUM texel(ivec2 p)

@@ -1,7 +1,11 @@
 // One level of a summed mipmap: each texel is the sum of the four below it (thesis 3.3).
+
+// The level below, as level 0 of what is read.
 uniform SUM_SAMPLER finer;
+// Columns and rows of the level below.
 uniform ivec2 finer_size;
 
+// Photons of the block.
 layout(location = 0) out SUM sum;
 
 SUM texel(ivec2 p)

@@ -1,9 +1,14 @@
 // Draws the pixels whose radius two boxes do not prove: one that holds enough, and a smaller one that does not.
 // Follows a counter that defines: uint count_in_box(ivec2 lo, ivec2 hi), both corners included and inside the map.
+
+// Columns and rows of the map, in pixels.
 uniform ivec2 map_size;
+// MR, in pixels.
 uniform uint max_radius;
+// The radius map to be proved, in pixels.
 uniform usampler2D radii;
 #ifdef LIMITED_MASK
+// The map's mark of pixels: 1 where MR ended the search with too few photons.
 uniform usampler2D limited;
 #endif
 

@@ -1,5 +1,7 @@
 // The radius of a pixel, in pixels: from the radius map, or the same everywhere.
+
 #ifdef FIXED_RADIUS
+// The radius of all kernels, in pixels.
 uniform uint fixed_radius;
 
 uint radius_at(ivec2 pixel)
@@ -7,6 +9,7 @@ uint radius_at(ivec2 pixel)
     return fixed_radius;
 }
 #else
+// The radius map, in pixels.
 uniform usampler2D radii;
 
 uint radius_at(ivec2 pixel)

@@ -1,4 +1,6 @@
 // The density map: photons per pixel, whole numbers in R32UI, R8UI or R32F.
+
+// Photons per pixel.
 #ifdef DENSITY_F32
 uniform sampler2D density;
 #else

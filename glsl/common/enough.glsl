@@ -1,4 +1,6 @@
 // Does a box with this many photons hold enough? The edge rule of thesis 3.1 and 4.4.
+
+// n: photons that a box has to hold.
 uniform uint min_photons;
 
 #ifdef WIDE_PRODUCTS

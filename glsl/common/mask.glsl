@@ -1,5 +1,7 @@
 // Pixels that need no radius are 0 in the mask, and get 0, which no other pixel has.
+
 #ifdef MASKED
+// 0 where a pixel needs no radius.
 uniform usampler2D mask;
 
 bool needs_none(ivec2 pixel)

@@ -1,6 +1,10 @@
 // A photon as a vertex, and the pixel that it is in.
+
+// Where the photon landed, in scene units.
 layout(location = 0) in vec3 photon_position;
+// Normal of the surface there, on the side that it came from.
 layout(location = 1) in vec3 photon_normal;
+// Red, green and blue, in the unit of the lights' power.
 layout(location = 2) in vec3 photon_power;
 // The surface's number, from 1.
 layout(location = 3) in float photon_surface;

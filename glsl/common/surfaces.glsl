@@ -4,6 +4,7 @@
 uniform sampler2D position;
 // Towards the camera; w: the surface's number from 1, negative for mirrors and glass, 0 where nothing is seen.
 uniform sampler2D normal;
+// Columns and rows of the picture, in pixels.
 uniform ivec2 map_size;
 // The pinhole, in scene units.
 uniform vec3 camera;

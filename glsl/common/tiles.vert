@@ -1,6 +1,10 @@
 // Two triangles for each tile of the class that a pass is for, nothing for the others.
+
+// Columns and rows of the map, in pixels.
 uniform ivec2 map_size;
+// The class of each tile.
 uniform usampler2D tile_classes;
+// Tiles of a row.
 uniform int tile_columns;
 
 // Places of the corners of two triangles: lower left, lower right, upper left, upper right.

@@ -1,5 +1,8 @@
 // A box cut into texels of a mipmap, one sample at a time, the rest on a stack (thesis 3.3.2, 4.3).
+
+// The mipmap of sums, or of averages.
 uniform SUM_SAMPLER pyramid;
+// The mipmap's last level.
 uniform int top_level;
 
 SUM block_sum(ivec2 block, int level)

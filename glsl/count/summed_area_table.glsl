@@ -1,4 +1,6 @@
 // Four corners of the table; what lies before the first row or column is nothing (thesis 3.4, Figure 3.6).
+
+// The summed-area table.
 uniform SUM_SAMPLER table;
 
 SUM entry(int x, int y)

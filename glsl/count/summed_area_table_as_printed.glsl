@@ -1,6 +1,9 @@
 // Listing 4.2 with its faults, each by its own define. Reads outside the texture, which the listing makes and GLSL
 // leaves undefined, give 0 here, the border colour that 4.1 relies on.
+
+// The summed-area table.
 uniform SUM_SAMPLER table;
+// Columns and rows of the table.
 uniform ivec2 table_size;
 
 uint entry(ivec2 p)

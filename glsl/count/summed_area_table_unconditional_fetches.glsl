@@ -1,4 +1,6 @@
 // All four corners of the table first, moved inside it, and only then which of them count (thesis 6.4.5).
+
+// The summed-area table.
 uniform SUM_SAMPLER table;
 
 SUM entry(int x, int y)

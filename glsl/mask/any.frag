@@ -1,7 +1,11 @@
 // Whether any of 8 x 8 texels is not 0.
+
+// The mask, or one reduced already.
 uniform usampler2D mask;
+// Columns and rows of the mask.
 uniform ivec2 mask_size;
 
+// 1 or 0.
 layout(location = 0) out uint any_set;
 
 void main()

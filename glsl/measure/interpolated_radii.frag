@@ -1,14 +1,21 @@
 // Radii of all pixels from those of fewer places, straight between them and even beyond the last.
+
+// Radii of the places, in their own pixels.
 uniform usampler2D places;
+// Columns and rows of places.
 uniform ivec2 places_size;
-// Pixels from a place to the next, and where the first one is.
+// Pixels from a place to the next.
 uniform int spacing;
+// Where the first one is, in pixels.
 uniform float first_place;
-// A radius there as one here: factor and summand.
+// A radius there times this, plus the summand, is one here.
 uniform float factor;
+// In pixels.
 uniform float summand;
+// MR, in pixels.
 uniform int max_radius;
 
+// The radius in pixels.
 layout(location = 0) out uint radius;
 
 float radius_of(ivec2 place)

@@ -1,8 +1,12 @@
 // What one radius costs a summed-area table at least: four fetches and their sum. The corners are those of a box of
 // radius 3, moved to the border where they would lie outside.
+
+// Photons per pixel.
 uniform usampler2D density;
+// Columns and rows of the map, in pixels.
 uniform ivec2 map_size;
 
+// The sum, which means nothing.
 layout(location = 0) out uint photons;
 
 void main()

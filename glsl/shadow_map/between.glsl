@@ -1,6 +1,6 @@
 // Whether a primitive of the scene is between two places, met exactly.
 
-// The nearest primitive, from 1; 0 for none.
+// The nearest primitive in each direction, from 1; 0 for none.
 uniform usampler2D nearest;
 // Three texels for each: corner and two edges of a triangle; centre and radius of a sphere.
 uniform sampler2D primitives;

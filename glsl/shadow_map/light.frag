@@ -9,18 +9,20 @@
 uniform sampler2D position;
 // Towards the camera; w: the surface's number from 1, negative for mirrors and glass, 0 where nothing is seen.
 uniform sampler2D normal;
-// Of the light.
+// The light's place, in scene units.
 uniform vec3 place;
-// Its normal, or the axis of its cone.
+// The light's normal, or the axis of its cone: a unit vector.
 uniform vec3 axis;
-// Cosine of its cone's half angle; below -1 for a surface, which shines by the cosine.
+// Cosine of half the angle of the light's cone; below -1 for a surface, which shines by the cosine.
 uniform float cone_cosine;
-// Power per solid angle along the axis.
+// Power per solid angle along the axis: red, green and blue.
 uniform vec3 intensity;
-// 0 and 1 along x, 2 and 3 along y, 4 and 5 along z.
+// The side of the cube: 0 and 1 along x, 2 and 3 along y, 4 and 5 along z, towards + first.
 uniform int face;
+// From scene units to clip space of that side.
 uniform mat4 to_face;
 
+// Irradiance: red, green and blue, in power per square of a scene unit; a: 1 where lit.
 layout(location = 0) out vec4 irradiance;
 
 // The side of the cube that a direction leaves through.

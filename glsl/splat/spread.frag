@@ -1,4 +1,5 @@
 // The photon's share of a pixel, as irradiance, and one for the fragment; blending adds them up.
+
 flat in vec3 kernel_position;
 flat in vec3 kernel_normal;
 flat in vec3 kernel_across;
@@ -9,6 +10,7 @@ flat in float kernel_number;
 flat in vec3 density;
 flat in ivec2 home;
 
+// Irradiance: red, green and blue, in power per square of a scene unit; a: fragments.
 layout(location = 0) out vec4 irradiance_and_fragments;
 
 void main()

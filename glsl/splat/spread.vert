@@ -1,4 +1,6 @@
 // Each photon as a quad over the pixels that its kernel may reach (thesis 2.6.2).
+
+// The weighted area that each photon's kernel covers, row by row; 0: it does not contribute.
 uniform sampler2D covered;
 
 flat out vec3 kernel_position;

@@ -1,4 +1,6 @@
-// Place, normal and albedo where the line of sight meets a sphere: exact, not as triangles. From a light, which sphere.
+// Where a line of sight meets a sphere, exactly and not as triangles: place, normal and albedo; for a cube map, which sphere.
+
+// The pinhole or the light's place, in scene units.
 uniform vec3 camera;
 
 in vec3 at;
@@ -8,16 +10,22 @@ flat in float radius;
 flat in float number;
 
 #ifdef PRIMITIVES
-// A distance beyond everything.
+// A distance beyond everything, in scene units.
 uniform float far;
 
+// The sphere's number, from 1.
 layout(location = 0) out uint primitive;
 #else
+// From scene units to clip space, with row 0 of the picture at the bottom.
 uniform mat4 to_clip;
+// Unit vector along which depth is measured.
 uniform vec3 view_direction;
 
+// Place in scene units; w: depth along the view, 0 where nothing is seen.
 layout(location = 0) out vec4 position;
+// Towards the camera; w: the surface's number from 1, negative for mirrors and glass.
 layout(location = 1) out vec4 normal;
+// Share of light that the surface reflects: red, green and blue, 0 to 1.
 layout(location = 2) out vec4 albedo;
 #endif
 

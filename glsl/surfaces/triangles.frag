@@ -1,5 +1,8 @@
 // Place, normal and albedo of what is nearest (thesis 2.3.2).
+
+// The pinhole, in scene units.
 uniform vec3 camera;
+// Unit vector along which depth is measured.
 uniform vec3 view_direction;
 
 in vec3 at;
@@ -7,8 +10,11 @@ flat in vec3 facing;
 flat in vec3 reflectance;
 flat in float number;
 
+// Place in scene units; w: depth along the view, 0 where nothing is seen.
 layout(location = 0) out vec4 position;
+// Towards the camera; w: the surface's number from 1, negative for mirrors and glass.
 layout(location = 1) out vec4 normal;
+// Share of light that the surface reflects: red, green and blue, 0 to 1.
 layout(location = 2) out vec4 albedo;
 
 void main()

@@ -1,9 +1,15 @@
 // Triangles of the scene, for the g-buffer.
+
+// A corner of a triangle, in scene units.
 layout(location = 0) in vec3 corner;
+// The triangle's normal, on either side.
 layout(location = 1) in vec3 face_normal;
+// Share of light that it reflects: red, green and blue, 0 to 1.
 layout(location = 2) in vec3 face_albedo;
+// The surface's number from 1, negative for mirrors and glass; in a cube map, of the primitive.
 layout(location = 3) in float face_number;
 
+// From scene units to clip space.
 uniform mat4 to_clip;
 
 out vec3 at;

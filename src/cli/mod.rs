@@ -4,6 +4,8 @@ mod bench;
 mod compare;
 mod devices;
 mod figures;
+mod glsl;
+mod method_options;
 pub(crate) mod output;
 mod photons;
 mod radius;
@@ -33,6 +35,7 @@ Examples:
   varikernel reproduce                         the thesis's numbers from this machine
   varikernel study                             run time against error, as one page
   varikernel stress --quick                    whether the promises about exactness hold here
+  varikernel glsl radius-search/inner          a shader's text, for engines with code of their own
   varikernel devices                           the OpenGL devices found here";
 
 /// Variable-kernel radius maps from photon density maps, exact, in OpenGL 3.3 core.
@@ -64,6 +67,8 @@ enum Verb {
     Compare(compare::Args),
     Photons(photons::Args),
     Synth(synth::Args),
+    // Boxed: it has nearly as many.
+    Glsl(Box<glsl::Args>),
     Devices(devices::Args),
 }
 
@@ -82,6 +87,7 @@ pub(crate) fn run(cli: Cli) -> Result<Outcome> {
         Verb::Compare(args) => compare::run(&args),
         Verb::Photons(args) => photons::run(&args),
         Verb::Synth(args) => synth::run(&args),
+        Verb::Glsl(args) => glsl::run(&args),
         Verb::Reproduce(args) => reproduce::run(&args),
         Verb::Study(args) => study::run(&args),
         Verb::Stress(args) => stress::run(&args),

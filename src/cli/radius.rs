@@ -5,20 +5,17 @@ mod report;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Result, anyhow, bail};
-use clap::ValueEnum as _;
 use varikernel::context::{self, DeviceChoice};
 use varikernel::gl::{self, DeviceInfo};
 use varikernel::image::{Attribute, Format, Picture, ReadOptions, read_counts, write_counts, write_picture};
 use varikernel::measure::{Difference, RadiusSummary, total_photons};
 use varikernel::planner::{self, Census, Choice};
-use varikernel::settings::{
-    Edges, Exactness, Faults, Matching, Method, Order, SatBuild, SatSamples, Search, Settings, Split,
-    Storage, Variation,
-};
+use varikernel::settings::{Exactness, Settings, Storage};
 use varikernel::{
     Certificate, CountBounds, DensityMap, Error, Frame, Image, Mask, RadiusPipeline, reference,
 };
 
+use super::method_options::MethodOptions;
 use super::{Outcome, output};
 use report::{MapReport, Report, Timing};
 
@@ -33,64 +30,8 @@ pub(crate) struct Args {
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
 
-    /// n: photons that a box has to hold, at least 1.
-    #[arg(short = 'n', long, default_value_t = 25, value_name = "N", value_parser = whole_number)]
-    #[arg(allow_negative_numbers = true)]
-    min_photons: u32,
-
-    /// MR: the radius at which the search ends, in pixels, 1 to 32767; pixels that find too few photons get it.
-    #[arg(short = 'r', long, default_value_t = 32, value_name = "MR", value_parser = whole_number)]
-    #[arg(allow_negative_numbers = true)]
-    max_radius: u32,
-
-    /// What counts outside the map (thesis 3.1).
-    #[arg(long, value_enum, default_value_t = Edges::Scale)]
-    edges: Edges,
-
-    /// How photons in a box are counted (thesis 3.2 to 3.4): auto lets a planner choose by the map, or name one of
-    /// brute-force, naive-mipmap, averaged-mipmap, pyramid, sat.
-    #[arg(long, default_value = "auto", value_parser = method, value_name = "METHOD")]
-    method: MethodChoice,
-
-    /// Order in which radii are tried (thesis 3.5); the naive mipmap has its own. [default: the planner's; with a named
-    /// method, bracketed for sat in whole numbers without faults, else binary]
-    #[arg(long, value_enum)]
-    search: Option<Order>,
-
-    /// How the summed-area table is built: by doubling (thesis 4.2) or by a scan. [default: scan; with a fault or a float:
-    /// doubling]
-    #[arg(long, value_enum)]
-    sat_build: Option<SatBuild>,
-
-    /// Samples a pass when the summed-area table is built by doubling (thesis 4.2).
-    /// [default: 4]
-    #[arg(long, value_enum)]
-    sat_samples: Option<SatSamples>,
-
-    /// Number in which sums are kept; u16 is for the summed-area table, where no box holds 2^16 photons; f16 (up to 2^11 in
-    /// all), f32-minus-mean and f32-minus-whole-mean (never proved, so with --allow-inexact only) are for measurements of it.
-    #[arg(long, value_enum, default_value_t = Storage::U32)]
-    storage: Storage,
-
-    /// How the pyramid splits what is left after a sample (thesis 4.3).
-    #[arg(long, value_enum, default_value_t = Split::Larger)]
-    split: Split,
-
-    /// How the pyramid finds the level of a sample (thesis 4.3, 6.3.5).
-    #[arg(long, value_enum, default_value_t = Matching::Bits)]
-    matching: Matching,
-
-    /// A variation of the method that the thesis leaves to future work (6.2.5, 6.3.5, 6.4.5); the radii stay the same.
-    #[arg(long, value_enum)]
-    variation: Option<Variation>,
-
-    /// Run the thesis's listings with their printed faults, or without.
-    #[arg(long, value_enum, default_value_t = Fidelity::Corrected)]
-    fidelity: Fidelity,
-
-    /// Run with these printed faults only.
-    #[arg(long, value_enum, value_delimiter = ',', conflicts_with = "fidelity")]
-    fault: Vec<Fault>,
+    #[command(flatten)]
+    method: MethodOptions,
 
     /// Compute even where sums may round or wrap, to see how wrong it gets.
     #[arg(long)]
@@ -124,34 +65,6 @@ pub(crate) struct Args {
     /// Print one JSON object instead of a table.
     #[arg(long)]
     json: bool,
-}
-
-/// One of the printed faults; what they do is in the library's documentation of `structure`.
-#[derive(Clone, Copy, Debug, clap::ValueEnum)]
-enum Fault {
-    /// Listing 4.2: coordinates clamped to 0..63 whatever the size.
-    #[value(name = "clamp-to-63")]
-    ClampTo63,
-    /// Listing 4.2: `> 0` where `>= 0` is meant.
-    BorderTest,
-    /// Listing 4.2: the lower left added back too often.
-    CornerTest,
-    /// Listing 4.2: horizontal and vertical passes swapped.
-    SwappedAxes,
-    /// Listing 4.2: the extension to more than 2 samples.
-    SampleStride,
-    /// Listing 4.3: strips that are not counted.
-    ForgottenStrip,
-    /// Section 4.4: a rounded ratio.
-    FloatRatio,
-}
-
-#[derive(Clone, Copy, Debug, clap::ValueEnum)]
-enum Fidelity {
-    /// Without the faults.
-    Corrected,
-    /// With the faults, made well defined.
-    AsPrinted,
 }
 
 pub(crate) fn run(args: &Args) -> Result<Outcome> {
@@ -246,11 +159,7 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
 
 /// The planner's choice, where nothing else is asked for.
 fn planned(args: &Args, settings: Settings, counts: &Image<u32>) -> Option<Choice> {
-    let is_free = matches!(args.method, MethodChoice::Auto)
-        && (args.search, args.sat_build, args.sat_samples, args.variation) == (None, None, None, None)
-        && settings.faults == Faults::NONE
-        && settings.storage == Storage::U32;
-    is_free.then(|| {
+    args.method.is_free().then(|| {
         let bounds = CountBounds::of(counts, settings.search);
         planner::choose(&settings, counts.size(), Some(&Census::of(counts)), bounds)
     })
@@ -270,10 +179,6 @@ fn read_mask(path: &Path, counts: &Image<u32>) -> Result<Image<u8>> {
         );
     }
     Ok(mask.map(|value| u8::from(value != 0)))
-}
-
-fn whole_number(text: &str) -> Result<u32, String> {
-    text.parse().map_err(|_| format!("give a whole number from 1 to {}", u32::MAX))
 }
 
 /// An error of the library, with the option to change and the file at fault.
@@ -315,81 +220,17 @@ fn check_fits(args: &Args, counts: &Image<u32>, device: &DeviceInfo) -> Result<(
     Ok(())
 }
 
-/// A method, or the planner's choice.
-#[derive(Clone, Copy, Debug)]
-enum MethodChoice {
-    Auto,
-    Named(Method),
-}
-
-fn method(text: &str) -> Result<MethodChoice, String> {
-    if text == "auto" {
-        return Ok(MethodChoice::Auto);
-    }
-    Method::from_str(text, false)
-        .map(MethodChoice::Named)
-        .map_err(|_| "give auto, brute-force, naive-mipmap, averaged-mipmap, pyramid or sat".to_owned())
-}
-
 /// What the arguments ask for; where the planner may choose, its choice without a map.
 fn settings(args: &Args) -> Settings {
-    let method = match args.method {
-        MethodChoice::Auto => Method::SummedAreaTable,
-        MethodChoice::Named(method) => method,
-    };
-    let faults = faults(args);
-    // The thesis's listings know neither a scan nor brackets, which are for whole numbers.
-    let is_ours = method == Method::SummedAreaTable
-        && faults == Faults::NONE
-        && args.storage.is_integer()
-        && args.sat_samples.is_none();
-    let (build, order) =
-        if is_ours { (SatBuild::Scan, Order::Bracketed) } else { (SatBuild::Doubling, Order::Binary) };
-    Settings {
-        search: Search {
-            min_photons: args.min_photons,
-            max_radius: args.max_radius,
-            edges: args.edges,
-            order: args.search.unwrap_or(order),
-        },
-        method,
-        split: args.split,
-        matching: args.matching,
-        sat_build: args.sat_build.unwrap_or(build),
-        sat_samples: args.sat_samples.unwrap_or(SatSamples::Four),
-        storage: args.storage,
-        faults,
-        variation: args.variation,
-        exactness: if args.allow_inexact { Exactness::Waived } else { Exactness::Required },
-        limited_mask: true,
-        masked: args.mask.is_some(),
-    }
-}
-
-fn faults(args: &Args) -> Faults {
-    let mut faults = match args.fidelity {
-        Fidelity::Corrected => Faults::NONE,
-        Fidelity::AsPrinted => Faults::AS_PRINTED,
-    };
-    for fault in &args.fault {
-        *match fault {
-            Fault::ClampTo63 => &mut faults.clamp_to_63,
-            Fault::BorderTest => &mut faults.border_test,
-            Fault::CornerTest => &mut faults.corner_test,
-            Fault::SwappedAxes => &mut faults.swapped_axes,
-            Fault::SampleStride => &mut faults.sample_stride,
-            Fault::ForgottenStrip => &mut faults.forgotten_strip,
-            Fault::FloatRatio => &mut faults.float_ratio,
-        } = true;
-    }
-    faults
+    let exactness = if args.allow_inexact { Exactness::Waived } else { Exactness::Required };
+    Settings { exactness, limited_mask: true, masked: args.mask.is_some(), ..args.method.settings() }
 }
 
 fn write_radius(args: &Args, settings: &Settings, device: &DeviceInfo, radius: &Image<u32>) -> Result<()> {
     match Format::of(&args.output)? {
         Format::Png => {
-            let title = format!("Radius of a box with {} photons", args.min_photons);
-            let picture = Picture { title: &title, unit: "pixels", range: Some(1..=args.max_radius) };
+            let title = format!("Radius of a box with {} photons", args.method.min_photons);
+            let picture = Picture { title: &title, unit: "pixels", range: Some(1..=args.method.max_radius) };
             write_picture(&args.output, radius, &picture)?;
         }
         Format::Exr | Format::Npy => {

@@ -5,7 +5,7 @@ use glow::HasContext as _;
 
 use super::program::Uniform;
 use super::state::{DRAW_BUFFERS, UNITS};
-use super::{Gl, Program, TargetShape, Texture};
+use super::{Gl, Program, TargetShape, Texture, TextureFormat};
 use crate::error::{Error, Result};
 
 /// Textures to draw into, one draw buffer per texture or layer of one, with a framebuffer per level.
@@ -114,6 +114,13 @@ impl Target {
                 glow.clear_buffer_u32_slice(glow::COLOR, buffer, &[value; 4]);
             }
         }
+    }
+
+    /// The format of each draw buffer.
+    fn formats(&self) -> Vec<TextureFormat> {
+        let of =
+            |texture: &Texture| std::iter::repeat_n(texture.format(), texture.layers().unwrap_or(1) as usize);
+        self.textures.iter().flat_map(of).collect()
     }
 
     /// Binds level 0 as what draws write to.
@@ -293,6 +300,9 @@ impl<'a> Pass<'a> {
     ) -> Result<()> {
         assert!(first.cmplt(end).all(), "a pass draws something: from {first} to {end}");
         let (corner, size) = (first.as_ivec2(), (end - first).as_ivec2());
+        if cfg!(debug_assertions) {
+            self.program.check_targets(&target.formats());
+        }
         let gl = self.program.gl();
         gl.current()?;
         gl.timed(self.label, || {

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use glow::HasContext as _;
 
-use super::{Gl, ShaderSource};
+use super::{Gl, ShaderSource, TextureFormat};
 use crate::error::{Error, Result};
 
 /// A value for a uniform.
@@ -61,6 +61,7 @@ pub(crate) struct Program {
     label: String,
     name: glow::Program,
     uniforms: BTreeMap<String, Slot>,
+    target_formats: Vec<TextureFormat>,
 }
 
 #[derive(Debug)]
@@ -84,8 +85,13 @@ impl Program {
         // SAFETY: the context is current while the handle lives; each name is deleted on every way out.
         unsafe {
             let name = glow.create_program().map_err(|what| gl.failure(&what))?;
-            let mut owned =
-                Self { gl: gl.clone(), label: source.label().to_owned(), name, uniforms: BTreeMap::new() };
+            let mut owned = Self {
+                gl: gl.clone(),
+                label: source.label().to_owned(),
+                name,
+                uniforms: BTreeMap::new(),
+                target_formats: source.target_formats().to_vec(),
+            };
             for (stage, text) in
                 [(glow::VERTEX_SHADER, source.vertex()), (glow::FRAGMENT_SHADER, source.fragment())]
             {
@@ -172,6 +178,19 @@ impl Program {
             name: name.to_owned(),
             known: self.uniforms.keys().map(String::as_str).collect::<Vec<_>>().join(", "),
         })
+    }
+
+    /// Whether a draw to textures of `formats` is what the source says.
+    ///
+    /// # Panics
+    /// If it is not: our own mistake.
+    pub(super) fn check_targets(&self, formats: &[TextureFormat]) {
+        let declared = &self.target_formats;
+        assert!(
+            declared.is_empty() || declared == formats,
+            "{}: drawn to {formats:?}, not {declared:?}",
+            self.label
+        );
     }
 
     pub(super) fn gl(&self) -> &Gl {

@@ -36,7 +36,10 @@ impl PointPass {
     /// Its shader.
     #[must_use]
     pub fn source() -> ShaderSource {
-        ShaderSource::new(LABEL).vertex_file(glsl!("measure/points.vert")).file(glsl!("measure/points.frag"))
+        ShaderSource::new(LABEL)
+            .targets([TextureFormat::R32Float])
+            .vertex_file(glsl!("measure/points.vert"))
+            .file(glsl!("measure/points.frag"))
     }
 
     /// Draws all photons once.

@@ -26,7 +26,7 @@ impl Unit {
     /// Its shader.
     #[must_use]
     pub fn source(self) -> ShaderSource {
-        ShaderSource::new(self.label()).file(match self {
+        ShaderSource::new(self.label()).targets([TextureFormat::R32Uint]).file(match self {
             Self::Copy => glsl!("measure/copy.frag"),
             Self::Probe => glsl!("measure/probe.frag"),
         })

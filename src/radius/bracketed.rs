@@ -75,9 +75,16 @@ impl Class {
         self != Self::Edge || settings.search.edges == Edges::Scale
     }
 
-    /// Adds the numbers of all classes, and this one's.
+    /// Adds the numbers of all classes, this one's, and its name.
     fn define(self, source: ShaderSource) -> ShaderSource {
-        define_classes(source).define("CLASS", self as u32)
+        define_classes(source).define("CLASS", self as u32).variant(match self {
+            // Drawn as tiles, in place of the whole map.
+            Self::Unreached => "tiles",
+            Self::Dense => "dense",
+            Self::Inner => "inner",
+            Self::Edge => "edge",
+            Self::Kept => "kept",
+        })
     }
 }
 
@@ -278,6 +285,9 @@ pub(super) fn sources(density: TextureFormat, settings: &Settings) -> Vec<Shader
 /// The brackets and classes of tiles.
 fn tile_source(density: TextureFormat, settings: &Settings, before: Before) -> ShaderSource {
     let source = define_classes(ShaderSource::new(TILE))
+        .variant_if(before == Before::Changed, "changed")
+        .variant_if(before == Before::Added, "added")
+        .targets([TextureFormat::R32Uint, TextureFormat::R8Uint])
         .define_if(settings.masked, "MASKED")
         .define_if(before != Before::Nothing, "CHANGED")
         .define_if(before == Before::Added, "ONLY_ADDED");
@@ -294,6 +304,8 @@ fn block_sources(
     let of_class = |class: Class| {
         let source = class
             .define(ShaderSource::new(BLOCKS))
+            .variant(side.to_string())
+            .targets([TextureFormat::R32Uint])
             .define("TILE_SIDE", TILE_SIDE)
             .define("WIDER_SIDE", wider_side)
             .define("WIDER_SIDE_LOG2", wider_side.ilog2())

@@ -54,5 +54,7 @@ fn in_halves(settings: &Settings) -> Settings {
 
 /// The search of one pixel in `step`².
 pub(crate) fn source(density: TextureFormat, settings: &Settings, step: u32) -> ShaderSource {
-    search_source(density, &in_halves(settings), Continued::No).define("GRID_STEP", step)
+    search_source(density, &in_halves(settings), Continued::No)
+        .variant(format!("every-{step}"))
+        .define("GRID_STEP", step)
 }

@@ -157,6 +157,8 @@ pub(crate) fn search_sources(density: TextureFormat, settings: &Settings) -> Vec
 /// One search and one counter.
 fn search_source(density: TextureFormat, settings: &Settings, continued: Continued) -> ShaderSource {
     let source = ShaderSource::new(SEARCH)
+        .variant_if(continued == Continued::Yes, "continued")
+        .targets(RadiusMap::formats(settings.limited_mask))
         .define_if(settings.search.edges == Edges::Zero, "EDGES_ZERO")
         .define_if(settings.faults.float_ratio, "FAULT_FLOAT_RATIO")
         .define_if(exactness::needs_wide_products(settings), "WIDE_PRODUCTS")

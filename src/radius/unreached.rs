@@ -22,6 +22,7 @@ pub(super) fn pass<'a>(settings: &Settings, program: &'a Program, frame: &Frame<
 
 pub(super) fn source(settings: &Settings) -> ShaderSource {
     ShaderSource::new(UNREACHED)
+        .targets(RadiusMap::formats(settings.limited_mask))
         .define_if(settings.limited_mask, "LIMITED_MASK")
         .define_if(settings.masked, "MASKED")
         .file(glsl!("common/mask.glsl"))

@@ -330,12 +330,21 @@ fn rgb([red, green, blue, _]: [f32; 4]) -> [f32; 3] {
     [red, green, blue]
 }
 
+/// The shaders of a picture beside those of its light by photons: what photons meet first, and what pixels show.
+#[must_use]
+pub fn surface_sources() -> Vec<ShaderSource> {
+    cube_map::sources().into_iter().chain(gbuffer::sources()).collect()
+}
+
+/// The shaders of a picture after its light by photons: direct light by shadow maps, and all of it together.
+#[must_use]
+pub fn shading_sources() -> Vec<ShaderSource> {
+    vec![shadow_map::source(), shade::source()]
+}
+
 /// Every shader that a picture may compile beside those of the radius map.
 #[must_use]
 pub fn shader_sources() -> Vec<ShaderSource> {
-    let mut sources = irradiance::shader_sources();
-    sources.extend([shade::source(), shadow_map::source()]);
-    sources.extend(cube_map::sources());
-    sources.extend(gbuffer::sources());
-    sources
+    let light = irradiance::shader_sources();
+    surface_sources().into_iter().chain(light).chain(shading_sources()).collect()
 }

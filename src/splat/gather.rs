@@ -10,7 +10,7 @@ use glam::UVec2;
 use super::{check, read_radius};
 use crate::density::DensityStage;
 use crate::error::Result;
-use crate::gl::{Gl, Pass, Program, ShaderSource, StateGuard, Target, glsl};
+use crate::gl::{Gl, Pass, Program, ShaderSource, StateGuard, Target, TextureFormat, glsl};
 use crate::maps::{ChosenRadius, IrradianceMap, SurfaceMaps};
 use crate::settings::Kernel;
 
@@ -62,6 +62,8 @@ impl GatherStage {
 
 pub(crate) fn source(kernel: Kernel, fixed: bool, correct: bool) -> ShaderSource {
     super::source(LABEL, kernel, fixed)
+        .variant_if(correct, "count-correction")
+        .targets([TextureFormat::Rgba32Float])
         .define_if(correct, "COUNT_CORRECTION")
         .file(glsl!("common/surfaces.glsl"))
         .file(glsl!("common/kernel.glsl"))

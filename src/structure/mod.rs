@@ -198,5 +198,6 @@ pub(crate) fn density_access(
 
 /// The shader that copies a density map into level 0 of a structure.
 fn seed_source(label: &str, density: TextureFormat, settings: &Settings) -> ShaderSource {
-    density_access(ShaderSource::new(label), density, settings).file(crate::gl::glsl!("build/seed.frag"))
+    let source = ShaderSource::new(label).targets([format(settings)]);
+    density_access(source, density, settings).file(crate::gl::glsl!("build/seed.frag"))
 }

@@ -7,6 +7,7 @@ mod compare;
 mod devices;
 mod exact;
 mod files;
+mod glsl;
 mod outputs;
 mod photons;
 mod render;

@@ -16,6 +16,7 @@ mod frame_path;
 mod frames;
 mod host;
 mod host_picture;
+mod interface;
 #[cfg(feature = "render")]
 mod irradiance;
 mod labels;

@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ffi::CStr;
 use std::process::Command;
 
-use varikernel::gl::{ShaderSource, TextureFormat};
+use varikernel::gl::{ShaderSource, ShaderStage, TextureFormat};
 use varikernel::measure::Unit;
 use varikernel::pipeline::shader_sources;
 use varikernel::settings::{
@@ -37,7 +37,7 @@ fn strict(candidate: &context::Candidate) -> Gl {
 }
 
 /// Every setting that changes a shader, in all combinations that differ.
-fn all_settings() -> Vec<Settings> {
+pub(crate) fn all_settings() -> Vec<Settings> {
     let mut all = Vec::new();
     for method in Method::ALL {
         for order in [Order::Forward, Order::Binary, Order::Bracketed] {
@@ -76,7 +76,7 @@ fn all_settings() -> Vec<Settings> {
     all
 }
 
-fn all_sources() -> Vec<ShaderSource> {
+pub(crate) fn all_sources() -> Vec<ShaderSource> {
     let mut sources = BTreeMap::from(Unit::ALL.map(|unit| (unit.source().fragment(), unit.source())));
     let makers = [MaskMaker::shader_source(), PositionMaker::shader_source()];
     for source in varikernel::irradiance::shader_sources().into_iter().chain(makers) {
@@ -122,6 +122,16 @@ fn every_shader_passes_glslang_validator_and_enables_no_extension() {
         let file = folder.path().join(format!("{number}.vert"));
         std::fs::write(&file, text).unwrap();
         files.push(file);
+    }
+    // As they are resolved for a reader, under names that tell the two apart.
+    for stage in ShaderStage::ALL {
+        let texts: BTreeSet<String> = sources.iter().map(|source| source.resolved(stage)).collect();
+        for (number, text) in texts.iter().enumerate() {
+            let ending = if stage == ShaderStage::Vertex { "vert" } else { "frag" };
+            let file = folder.path().join(format!("resolved-{number}.{ending}"));
+            std::fs::write(&file, text).unwrap();
+            files.push(file);
+        }
     }
     let validate = |files: &[std::path::PathBuf]| {
         Command::new("glslangValidator")

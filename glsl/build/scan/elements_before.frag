@@ -1,9 +1,14 @@
 // Scan, step 3: the sum of all elements before each, for a run of 8 at once: whole groups first, then the elements of the
 // run's own group. Follows a file that defines the elements.
+
+// The sum of each group of elements.
 uniform usampler2D group_sums;
+// Elements of a line.
 uniform int elements;
+// Elements of a group.
 uniform int group_size;
 
+// Photons of all elements before element i of the run.
 layout(location = 0) out uvec4 before_0;
 layout(location = 1) out uvec4 before_1;
 layout(location = 2) out uvec4 before_2;

@@ -1,7 +1,11 @@
 // Scan, step 2: the sum of each group of elements. Follows a file that defines the elements.
+
+// Elements of a line.
 uniform int elements;
+// Elements of a group.
 uniform int group_size;
 
+// Photons of the group, for 4 rows or columns at once.
 layout(location = 0) out uvec4 sum;
 
 void main()

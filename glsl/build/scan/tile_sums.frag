@@ -1,8 +1,12 @@
 // Scan, step 1: the sums of each row and each column of a tile of 4 x 8 texels.
+
+// Columns and rows of the map, in pixels.
 uniform ivec2 map_size;
 
+// Photons of each row.
 layout(location = 0) out uvec4 rows_0_to_3;
 layout(location = 1) out uvec4 rows_4_to_7;
+// Photons of each column.
 layout(location = 2) out uvec4 columns;
 
 void main()

@@ -1,8 +1,13 @@
 // Scan, step 4: the entries of a tile of 4 x 8, from its counts and what lies before it.
+
+// Columns and rows of the map, in pixels.
 uniform ivec2 map_size;
+// Photons before each row of a tile, to its left.
 uniform usampler2DArray rows_before;
+// Photons before each column of a tile, in all rows below it.
 uniform usampler2DArray columns_before;
 
+// The 4 entries of the tile's row i.
 layout(location = 0) out uvec4 row_0;
 layout(location = 1) out uvec4 row_1;
 layout(location = 2) out uvec4 row_2;

@@ -1,6 +1,9 @@
 // Scan, step 5: the entries as one plain texture.
+
+// The entries in tiles of 4 x 8: a layer for each row.
 uniform usampler2DArray tiles;
 
+// Photons up to and with this column and row.
 layout(location = 0) out uint sum;
 
 void main()

@@ -129,11 +129,16 @@ impl Approximation {
 }
 
 fn half_density_source() -> ShaderSource {
-    ShaderSource::new(HALF_DENSITY).file(glsl!("common/sum.glsl")).file(glsl!("build/summed_mipmap.frag"))
+    ShaderSource::new(HALF_DENSITY)
+        .targets([TextureFormat::R32Uint])
+        .file(glsl!("common/sum.glsl"))
+        .file(glsl!("build/summed_mipmap.frag"))
 }
 
 fn interpolation_source() -> ShaderSource {
-    ShaderSource::new(INTERPOLATION).file(glsl!("measure/interpolated_radii.frag"))
+    ShaderSource::new(INTERPOLATION)
+        .targets([TextureFormat::R32Uint])
+        .file(glsl!("measure/interpolated_radii.frag"))
 }
 
 /// The shaders of every approximation.

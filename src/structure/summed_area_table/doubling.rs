@@ -117,6 +117,7 @@ pub(super) fn sources(density: TextureFormat, settings: &Settings) -> Vec<Shader
 
 fn doubling_source(settings: &Settings) -> ShaderSource {
     let source = ShaderSource::new(DOUBLING)
+        .targets([structure::format(settings)])
         .define("SAMPLES", settings.sat_samples.count())
         .define_if(settings.reaching_faults().sample_stride, "FAULT_SAMPLE_STRIDE");
     structure::number(source, settings).file(glsl!("build/doubling.frag"))

@@ -195,7 +195,8 @@ pub(super) fn build_sources(density: TextureFormat, settings: &Settings) -> Vec<
 }
 
 fn addition_source(settings: &Settings) -> ShaderSource {
-    super::number(ShaderSource::new(ADDITION), settings).file(glsl!("build/add_tables.frag"))
+    super::number(ShaderSource::new(ADDITION).targets([super::format(settings)]), settings)
+        .file(glsl!("build/add_tables.frag"))
 }
 
 pub(super) fn counter(source: ShaderSource, settings: &Settings) -> ShaderSource {

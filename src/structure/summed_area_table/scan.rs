@@ -256,28 +256,40 @@ pub(super) fn sources(density: TextureFormat, settings: &Settings) -> Vec<Shader
 }
 
 fn tile_sums_source(density: TextureFormat, settings: &Settings) -> ShaderSource {
-    structure::density_access(ShaderSource::new(TILE_SUMS), density, settings)
-        .file(glsl!("build/scan/tile_sums.frag"))
+    structure::density_access(
+        ShaderSource::new(TILE_SUMS).targets([TextureFormat::Rgba32Uint; 3]),
+        density,
+        settings,
+    )
+    .file(glsl!("build/scan/tile_sums.frag"))
 }
 
 fn scan_sources(axis: Axis) -> [ShaderSource; 2] {
     let source = |label| {
-        ShaderSource::new(label).file(match axis {
-            Axis::Rows => glsl!("build/scan/along_rows.glsl"),
-            Axis::Columns => glsl!("build/scan/along_columns.glsl"),
-        })
+        let (variant, elements) = match axis {
+            Axis::Rows => ("rows", glsl!("build/scan/along_rows.glsl")),
+            Axis::Columns => ("columns", glsl!("build/scan/along_columns.glsl")),
+        };
+        ShaderSource::new(label).variant(variant).file(elements)
     };
     [
-        source(GROUP_SUMS).file(glsl!("build/scan/group_sums.frag")),
-        source(ELEMENTS_BEFORE).file(glsl!("build/scan/elements_before.frag")),
+        source(GROUP_SUMS).targets([TextureFormat::Rgba32Uint]).file(glsl!("build/scan/group_sums.frag")),
+        source(ELEMENTS_BEFORE)
+            .targets([TextureFormat::Rgba32Uint; 8])
+            .file(glsl!("build/scan/elements_before.frag")),
     ]
 }
 
 fn tiles_source(density: TextureFormat, settings: &Settings) -> ShaderSource {
-    structure::density_access(ShaderSource::new(TILES), density, settings)
-        .file(glsl!("build/scan/tiles.frag"))
+    structure::density_access(
+        ShaderSource::new(TILES).targets([TextureFormat::Rgba32Uint; 8]),
+        density,
+        settings,
+    )
+    .file(glsl!("build/scan/tiles.frag"))
 }
 
 fn unpack_source(settings: &Settings) -> ShaderSource {
-    structure::number(ShaderSource::new(UNPACK), settings).file(glsl!("build/scan/unpack.frag"))
+    structure::number(ShaderSource::new(UNPACK).targets([structure::format(settings)]), settings)
+        .file(glsl!("build/scan/unpack.frag"))
 }
