@@ -13,7 +13,7 @@ use headless::{Headless, Result, framebuffer, program, texture};
 use varikernel::gl::TextureFormat;
 use varikernel::glam::UVec2;
 use varikernel::settings::Search;
-use varikernel::{CountBounds, DensityMap, Gl, RadiusPipeline, Settings, glow};
+use varikernel::{CountBounds, DensityMap, Gl, RadiusPipeline, Settings, StatePolicy, glow};
 
 const SIDE: u16 = 256;
 const PHOTONS: u16 = 40_000;
@@ -60,13 +60,15 @@ fn main() -> Result<()> {
     // Step 2: the loader becomes a handle.
     // SAFETY: the context stays current until the end of `main`.
     let gl = unsafe { Gl::from_loader(host.loader()) }?;
-    // Step 3: all state that is touched is put back, which is what a handle does.
+    // Step 3: all state that is touched is put back.
+    let gl = gl.with_state_policy(StatePolicy::Restore);
     // Step 4: the question, and how it is answered.
     let usual = Settings::default();
     let settings = Settings { search: Search { min_photons: 25, max_radius: 32, ..usual.search }, ..usual };
-    // Step 5: the memory that it takes.
-    // Step 6: a pipeline for a size.
+    // Step 5: the memory that it takes, before it is taken.
     let map_size = UVec2::splat(SIDE.into());
+    let memory = RadiusPipeline::memory_required(map_size, &settings)?.at_creation;
+    // Step 6: a pipeline for a size.
     let mut pipeline = RadiusPipeline::new(&gl, map_size, TextureFormat::R32Float, settings)?;
     // Step 7: the host's texture, borrowed. Its bounds say that the result will be exact.
     let density = DensityMap::borrow(&gl, counts, CountBounds::total_at_most(PHOTONS.into()))?;
@@ -92,11 +94,12 @@ fn main() -> Result<()> {
     };
     let proved = pipeline.certify(&density)?.is_proved();
     let (middle, corner) = (radius(SIDE / 2, SIDE / 2), radius(0, 0));
-    println!("radius in the middle {middle}, in a corner {corner}; proved: {proved}");
+    println!("{} KiB; radius in the middle {middle}, in a corner {corner}; proved: {proved}", memory >> 10);
     if let Some(path) = picture {
         image::save_buffer(&path, &pixels, SIDE.into(), SIDE.into(), image::ColorType::Rgba8)?;
     }
 
-    // Step 10: a new size takes a new pipeline and a new borrow. Everything goes, in any order, while the context is current.
+    // Step 10: a new size takes new textures and keeps the shaders. Everything goes while the context is current, in any order.
+    pipeline.resize(map_size / 2)?;
     Ok(())
 }

@@ -31,7 +31,8 @@ use three_d::{
 use varikernel::glam::{self, UVec2};
 use varikernel::settings::IrradianceSettings;
 use varikernel::{
-    Gl, HostDepth, HostSurfaces, IrradiancePipeline, PhotonPoints, PositionMaker, SurfaceMaps, View, glow,
+    Gl, HostDepth, HostSurfaces, IrradiancePipeline, PhotonPoints, PositionMaker, StatePolicy, SurfaceMaps,
+    View, glow,
 };
 
 const SIDE: u16 = 320;
@@ -46,23 +47,38 @@ fn main() -> Result<()> {
     // The engine's own frame, before the library has done anything.
     let before = target.picture(&room);
 
+    // Step 1: the engine's context is current on this thread.
+    // Step 2: its glow context becomes a handle.
     // SAFETY: the context stays current until the end of `main`.
     let gl = unsafe { Gl::from_glow(Arc::clone(&host.glow)) }?;
+    // Step 3: the engine keeps state from frame to frame, so that all that is touched has to be put back.
+    let gl = gl.with_state_policy(StatePolicy::Restore);
+    // Step 4: the question, and how it is answered.
+    let settings = IrradianceSettings::default();
+    // Step 5: the memory that it takes, before it is taken.
     let size = UVec2::splat(SIDE.into());
-    let mut light = IrradiancePipeline::new(&gl, size, IrradianceSettings::default())?;
-    let mut positions = PositionMaker::new(&gl, size)?;
-    let mut points = PhotonPoints::new(&gl);
-    points.upload(&trace(100_000))?;
+    println!("memory: {} KiB", IrradiancePipeline::memory_required(size, &settings)? >> 10);
+    // Step 6: a pipeline for a size.
+    let mut light = IrradiancePipeline::new(&gl, size, settings)?;
 
-    // The frame: the engine draws its g-buffer, the library its light, and the engine shows both.
+    // Step 7: the engine's g-buffer, borrowed, and photons.
     let gbuffer = Target::float(&engine);
     let (normal, depth) = gbuffer.normals(&room)?;
     let view = View::from_matrices(matrix(room.camera.view()), matrix(room.camera.projection()), size)?;
-    positions.from_depth(HostDepth { texture: depth, reversed: false, zero_to_one: false }, &view)?;
+    let depth = HostDepth { texture: depth, reversed: false, zero_to_one: false };
+    let mut positions = PositionMaker::borrow(&gl, depth)?;
     let surfaces = HostSurfaces { position: positions.texture(), normal };
-    let surfaces = SurfaceMaps::borrow(&gl, view, surfaces)?;
+    let mut surfaces = SurfaceMaps::borrow(&gl, view, surfaces)?;
+    let mut points = PhotonPoints::new(&gl);
+    points.upload(&trace(100_000))?;
+
+    // Step 8: each frame, after the engine has drawn its g-buffer.
+    positions.render(&view)?;
+    surfaces.set_view(view)?;
     let irradiance = light.render(&surfaces, &points)?.texture();
     let radii = light.radii().ok_or("radii are variable")?.texture();
+
+    // Step 9: the light and the radii in the engine's own shaders.
     let lit = target.effect(&room, ByPhotons { irradiance });
     let of_radii = target.effect(&room, Radii { radii });
 
@@ -72,6 +88,9 @@ fn main() -> Result<()> {
     if let Some(path) = path {
         save(&path, &[&after, &lit, &of_radii])?;
     }
+
+    // Step 10: a new size takes new textures and keeps the shaders. Everything goes while the context is current, in any order.
+    light.resize(size / 2)?;
     Ok(())
 }
 
