@@ -2,7 +2,11 @@
 //! Commands are counted on their way through the loader.
 
 #![expect(unsafe_code, reason = "commands are wrapped to count them")]
-#![expect(clippy::cast_sign_loss, reason = "arguments are logged as they are, whatever their type")]
+#![expect(
+    clippy::cast_sign_loss,
+    clippy::cast_lossless,
+    reason = "arguments are logged as they are, whatever their type"
+)]
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;

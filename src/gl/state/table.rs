@@ -97,24 +97,24 @@ const OFF: Option<Values> = Some([0; 4]);
 const ON: Option<Values> = Some([1; 4]);
 const NOTHING: Option<Values> = Some([0; 4]);
 
-const fn enums<const N: usize>(names: [u32; N]) -> Option<Values> {
+const fn enums<const N: usize>(names: [u32; N]) -> Values {
     let mut values = [0; 4];
     let mut index = 0;
     while index < N {
         values[index] = names[index].cast_signed();
         index += 1;
     }
-    Some(values)
+    values
 }
 
-const fn integer(value: i32) -> Option<Values> {
-    Some([value, 0, 0, 0])
+const fn integer(value: i32) -> Values {
+    [value, 0, 0, 0]
 }
 
 /// What every public call touches. It is read from the first row to the last, and put back from the last to the first.
 pub(super) static PASSES: &[Row] = &[
     // First, since asking for what a unit holds changes it.
-    row!(Setting::ActiveTexture, [ACTIVE_TEXTURE], enums([glow::TEXTURE0]), None),
+    row!(Setting::ActiveTexture, [ACTIVE_TEXTURE], Some(enums([glow::TEXTURE0])), None),
     row!(
         Setting::Unit,
         [TEXTURE_BINDING_2D, TEXTURE_BINDING_2D_ARRAY, SAMPLER_BINDING],
@@ -133,18 +133,18 @@ pub(super) static PASSES: &[Row] = &[
     row!(
         Setting::BlendFunction,
         [BLEND_SRC_RGB, BLEND_DST_RGB, BLEND_SRC_ALPHA, BLEND_DST_ALPHA],
-        enums([glow::ONE, glow::ZERO, glow::ONE, glow::ZERO]),
+        Some(enums([glow::ONE, glow::ZERO, glow::ONE, glow::ZERO])),
         None
     ),
     row!(
         Setting::BlendEquation,
         [BLEND_EQUATION_RGB, BLEND_EQUATION_ALPHA],
-        enums([glow::FUNC_ADD, glow::FUNC_ADD]),
+        Some(enums([glow::FUNC_ADD, glow::FUNC_ADD])),
         None
     ),
     off!(DEPTH_TEST),
-    row!(Setting::DepthFunction, [DEPTH_FUNC], enums([glow::LESS]), None),
-    row!(Setting::DepthMask, [DEPTH_WRITEMASK], integer(1), None),
+    row!(Setting::DepthFunction, [DEPTH_FUNC], Some(enums([glow::LESS])), None),
+    row!(Setting::DepthMask, [DEPTH_WRITEMASK], Some(integer(1)), None),
     off!(DEPTH_CLAMP),
     off!(POLYGON_OFFSET_FILL),
     // A vertex shader that draws points says how large they are, where it draws them.
@@ -166,22 +166,22 @@ pub(super) static PASSES: &[Row] = &[
     row!(
         Setting::PolygonMode,
         [POLYGON_MODE],
-        enums([glow::FILL, glow::FILL]),
-        enums([glow::FILL, glow::FILL])
+        Some(enums([glow::FILL, glow::FILL])),
+        Some(enums([glow::FILL, glow::FILL]))
     ),
     row!(Setting::Buffer(glow::PIXEL_PACK_BUFFER), [PIXEL_PACK_BUFFER_BINDING], NOTHING, NOTHING),
     row!(Setting::Buffer(glow::PIXEL_UNPACK_BUFFER), [PIXEL_UNPACK_BUFFER_BINDING], NOTHING, NOTHING),
     // Rows are tightly packed.
-    row!(Setting::PixelStore, [PACK_ALIGNMENT], integer(4), integer(1)),
-    row!(Setting::PixelStore, [PACK_ROW_LENGTH], integer(0), integer(0)),
-    row!(Setting::PixelStore, [PACK_SKIP_ROWS], integer(0), integer(0)),
-    row!(Setting::PixelStore, [PACK_SKIP_PIXELS], integer(0), integer(0)),
-    row!(Setting::PixelStore, [PACK_SWAP_BYTES], integer(0), integer(0)),
-    row!(Setting::PixelStore, [UNPACK_ALIGNMENT], integer(4), integer(1)),
-    row!(Setting::PixelStore, [UNPACK_ROW_LENGTH], integer(0), integer(0)),
-    row!(Setting::PixelStore, [UNPACK_SKIP_ROWS], integer(0), integer(0)),
-    row!(Setting::PixelStore, [UNPACK_SKIP_PIXELS], integer(0), integer(0)),
-    row!(Setting::PixelStore, [UNPACK_SWAP_BYTES], integer(0), integer(0)),
+    row!(Setting::PixelStore, [PACK_ALIGNMENT], Some(integer(4)), Some(integer(1))),
+    row!(Setting::PixelStore, [PACK_ROW_LENGTH], Some(integer(0)), Some(integer(0))),
+    row!(Setting::PixelStore, [PACK_SKIP_ROWS], Some(integer(0)), Some(integer(0))),
+    row!(Setting::PixelStore, [PACK_SKIP_PIXELS], Some(integer(0)), Some(integer(0))),
+    row!(Setting::PixelStore, [PACK_SWAP_BYTES], Some(integer(0)), Some(integer(0))),
+    row!(Setting::PixelStore, [UNPACK_ALIGNMENT], Some(integer(4)), Some(integer(1))),
+    row!(Setting::PixelStore, [UNPACK_ROW_LENGTH], Some(integer(0)), Some(integer(0))),
+    row!(Setting::PixelStore, [UNPACK_SKIP_ROWS], Some(integer(0)), Some(integer(0))),
+    row!(Setting::PixelStore, [UNPACK_SKIP_PIXELS], Some(integer(0)), Some(integer(0))),
+    row!(Setting::PixelStore, [UNPACK_SWAP_BYTES], Some(integer(0)), Some(integer(0))),
 ];
 
 /// What masks made of a host's depth buffer touch besides.
@@ -210,13 +210,13 @@ pub(super) static STENCIL_TESTS: &[Row] = &[
     row!(
         Setting::StencilOperation(glow::FRONT),
         [STENCIL_FAIL, STENCIL_PASS_DEPTH_FAIL, STENCIL_PASS_DEPTH_PASS],
-        enums([glow::KEEP; 3]),
+        Some(enums([glow::KEEP; 3])),
         None
     ),
     row!(
         Setting::StencilOperation(glow::BACK),
         [STENCIL_BACK_FAIL, STENCIL_BACK_PASS_DEPTH_FAIL, STENCIL_BACK_PASS_DEPTH_PASS],
-        enums([glow::KEEP; 3]),
+        Some(enums([glow::KEEP; 3])),
         None
     ),
 ];

@@ -207,5 +207,5 @@ fn failing_half_way(watch: &Watch<'_>) {
     let mut pipeline = pipeline(watch);
     pipeline.render(&map).unwrap();
     let failures = fail_at_each(|| pipeline.set_order(Order::Forward), after("RadiusPipeline::set_order"));
-    assert_eq!(failures, 4, "a program of two shaders, another for pixels without photons, a map");
+    assert_eq!(failures, 5, "two programs of two shaders each, and a map");
 }

@@ -66,11 +66,11 @@ fn check(choice: &context::DeviceChoice, policy: StatePolicy) {
     across(&host, glow::TIME_ELAPSED, || {
         let mut timer = varikernel::gl::Timer::new(&watch.gl).unwrap();
         let mut has_run = false;
-        let timed = timer.time(|| {
+        let result = timer.time(|| {
             has_run = true;
             Ok(())
         });
-        assert!(matches!(timed, Err(Error::QueryRunning { kind: "GL_TIME_ELAPSED" })), "{timed:?}");
+        assert!(matches!(result, Err(Error::QueryRunning { kind: "GL_TIME_ELAPSED" })), "{result:?}");
         assert!(!has_run);
         // A proof does not time.
         assert!(pipeline.certify(&map).unwrap().is_proved());

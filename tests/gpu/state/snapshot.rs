@@ -211,6 +211,10 @@ fn wide(values: &[i32]) -> Vec<i64> {
     values.iter().copied().map(i64::from).collect()
 }
 
+fn address(pointer: *mut c_void) -> i64 {
+    i64::try_from(pointer.addr()).unwrap()
+}
+
 impl Host {
     pub(super) fn limit(&self, name: u32) -> u32 {
         // SAFETY: the context is current.
@@ -321,7 +325,7 @@ impl Host {
                 let mut pointer = std::ptr::null_mut::<c_void>();
                 let parameter = glow::VERTEX_ATTRIB_ARRAY_POINTER;
                 (commands.get_vertex_attrib_pointer)(attribute, parameter, &raw mut pointer);
-                values.push(pointer.addr().cast_signed() as i64);
+                values.push(address(pointer));
                 states.push((format!("vertex array: attribute {attribute}"), values));
             }
             for (target, attachment) in [
@@ -347,7 +351,7 @@ impl Host {
             states.push(("buffer object: mapped one".to_owned(), wide(&values)));
             let mut pointer = std::ptr::null_mut::<c_void>();
             (commands.get_buffer_pointer)(glow::COPY_READ_BUFFER, glow::BUFFER_MAP_POINTER, &raw mut pointer);
-            states.push(("buffer object: where it is mapped".to_owned(), vec![pointer.addr() as i64]));
+            states.push(("buffer object: where it is mapped".to_owned(), vec![address(pointer)]));
             for target in [glow::PIXEL_PACK_BUFFER, glow::PIXEL_UNPACK_BUFFER, glow::ARRAY_BUFFER] {
                 let mut bytes = [0_u8; 64];
                 glow.get_buffer_sub_data(target, 0, &mut bytes);
