@@ -31,6 +31,7 @@
 //! # }
 //! ```
 //! From C and C++, the feature `capi` gives the same by `include/varikernel.h`; `examples/cpp` is a host.
+//! The [`guide`] goes through all of it in ten steps, from photons or a density map to radii or light, with the costs.
 //! Without a host, `context::open` (features `egl` and `osmesa`) makes a headless context.
 //!
 //! # The idea that keeps it small
@@ -117,6 +118,8 @@ pub mod frame;
 #[cfg(feature = "render")]
 mod gbuffer;
 pub mod gl;
+#[doc = include_str!("guide.md")]
+pub mod guide {}
 pub mod image;
 pub mod irradiance;
 pub mod maps;
