@@ -14,6 +14,8 @@ mod share_bar;
 mod stress;
 mod study;
 mod synth;
+#[cfg(feature = "window")]
+mod view;
 
 use std::io::{self, IsTerminal as _};
 
@@ -54,6 +56,8 @@ pub(crate) struct Cli {
 #[derive(Debug, Subcommand)]
 enum Verb {
     Render(render::Args),
+    #[cfg(feature = "window")]
+    View(Box<view::Args>),
     Figures(figures::Args),
     Radius(radius::Args),
     // Boxed: it has by far the most options.
@@ -77,6 +81,8 @@ pub(crate) enum Outcome {
 pub(crate) fn run(cli: Cli) -> Result<Outcome> {
     match cli.verb {
         Verb::Render(args) => render::run(&args),
+        #[cfg(feature = "window")]
+        Verb::View(args) => view::run(&args),
         Verb::Figures(args) => figures::run(&args),
         Verb::Radius(args) => radius::run(&args),
         Verb::Compare(args) => compare::run(&args),

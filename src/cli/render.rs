@@ -137,7 +137,7 @@ fn check_output(path: &Path) -> Result<()> {
 }
 
 /// `variable` or `fixed:3`.
-fn parse_radius(text: &str) -> Result<RadiusChoice> {
+pub(super) fn parse_radius(text: &str) -> Result<RadiusChoice> {
     if text == "variable" {
         return Ok(RadiusChoice::Variable);
     }

@@ -224,8 +224,7 @@ impl ThreadGuard {
         let open = OPEN.with(Rc::clone);
         if open.replace(true) {
             return Err(Error::NoContext(
-                "a context is already open on this thread; drop everything made from it first"
-                    .to_owned(),
+                "a context is already open on this thread; drop everything made from it first".to_owned(),
             ));
         }
         Ok(Self { open })

@@ -78,7 +78,8 @@ fn read_png(file: impl BufRead + Seek) -> Result<Image<[u8; 3]>, Problem> {
     (limits.max_image_width, limits.max_image_height) = (Some(options.max_side), Some(options.max_side));
     limits.max_alloc = Some(8 * options.max_pixels);
     reader.limits(limits);
-    let decoded = reader.decode().map_err(|error| Problem::damaged(format!("damaged or too large: {error}")))?;
+    let decoded =
+        reader.decode().map_err(|error| Problem::damaged(format!("damaged or too large: {error}")))?;
     let picture = decoded.into_rgb8();
     let size = UVec2::new(picture.width(), picture.height());
     Ok(Image::from_values(size, bytemuck::cast_slice(picture.as_raw()).to_vec()))

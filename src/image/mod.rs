@@ -33,10 +33,10 @@ mod tone;
 pub use atomic::{check_writable, write_atomically};
 #[cfg(feature = "files")]
 pub use attribute::{Attribute, AttributeValue};
-#[cfg(feature = "render")]
-pub use colours::{Colours, read_colours};
 #[cfg(feature = "files")]
 pub use colour_map::colour_of_bar;
+#[cfg(feature = "render")]
+pub use colours::{Colours, read_colours};
 #[cfg(feature = "files")]
 pub use counts::ReadOptions;
 #[cfg(feature = "scene")]

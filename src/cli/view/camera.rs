@@ -51,7 +51,8 @@ impl Orbit {
         let sideways = self.camera.direction.cross(up).normalize();
         let steep = offset.angle_between(up);
         let pitch = (-TURN * down).clamp(STEEPEST - steep, std::f32::consts::PI - STEEPEST - steep);
-        let turned = Quat::from_axis_angle(up, -TURN * right) * Quat::from_axis_angle(-sideways, -pitch) * offset;
+        let turned =
+            Quat::from_axis_angle(up, -TURN * right) * Quat::from_axis_angle(-sideways, -pitch) * offset;
         self.camera.position = self.target + turned;
         self.camera.direction = -turned.normalize();
     }

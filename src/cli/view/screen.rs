@@ -59,7 +59,8 @@ pub(super) struct Side<'a> {
 impl Screen {
     pub(super) fn new(gl: &Gl) -> Result<Self> {
         let colours = Image::from_fn(UVec2::new(256, 1), |x, _| {
-            let [red, green, blue] = colour_of_bar(f64::from(x) / 255.0).map(|level| f32::from(level) / 255.0);
+            let [red, green, blue] =
+                colour_of_bar(f64::from(x) / 255.0).map(|level| f32::from(level) / 255.0);
             [red, green, blue, 1.0]
         });
         Ok(Self {

@@ -130,7 +130,11 @@ impl Maps {
 pub(super) fn round_up(value: f32) -> f32 {
     let value = value.max(1.0);
     let power = 10.0_f32.powf(value.log10().floor());
-    [1.0, 2.0, 5.0, 10.0].map(|factor| factor * power).into_iter().find(|&end| end >= value * 0.9999).unwrap_or(value)
+    [1.0, 2.0, 5.0, 10.0]
+        .map(|factor| factor * power)
+        .into_iter()
+        .find(|&end| end >= value * 0.9999)
+        .unwrap_or(value)
 }
 
 /// Where a value lies on a legend's bar, from 0 to 1; as in `view/show.frag`.

@@ -186,7 +186,10 @@ fn link(gl: &Gl, label: &str, fragment: &str) -> Result<glow::Program> {
     let refused = |log: String, source: &str| Error::Shader {
         label: label.to_owned(),
         log,
-        source_text: (1..).zip(source.lines()).map(|(number, line)| format!("{number:<4} {line}\n")).collect(),
+        source_text: (1..)
+            .zip(source.lines())
+            .map(|(number, line)| format!("{number:<4} {line}\n"))
+            .collect(),
     };
     // SAFETY: the context is current while the handle lives.
     unsafe {

@@ -60,6 +60,9 @@ mod tests {
         assert!(missing(&[("libc.so.6", "libc6")]).is_ok());
         let error = missing(&[("libc.so.6", "libc6"), ("libnonesuch.so.7", "libnonesuch7")]).unwrap_err();
         let error = error.to_string();
-        assert!(error.contains("needs libnonesuch.so.7, which") && error.ends_with("install libnonesuch7"), "{error}");
+        assert!(
+            error.contains("needs libnonesuch.so.7, which") && error.ends_with("install libnonesuch7"),
+            "{error}"
+        );
     }
 }

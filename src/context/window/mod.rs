@@ -17,9 +17,7 @@ use std::sync::Arc;
 
 use glam::UVec2;
 use glutin::config::{Config, ConfigTemplateBuilder};
-use glutin::context::{
-    ContextApi, ContextAttributesBuilder, GlProfile, PossiblyCurrentContext, Version,
-};
+use glutin::context::{ContextApi, ContextAttributesBuilder, GlProfile, PossiblyCurrentContext, Version};
 use glutin::display::{Display, GetGlDisplay as _};
 use glutin::prelude::*;
 use glutin::surface::{Surface, SwapInterval, WindowSurface};
@@ -86,7 +84,8 @@ impl GlWindow {
     /// [`Error::NoContext`] with the platform's answer; [`Error::Version`] with what was found if it is older than 3.3.
     pub fn open(event_loop: &ActiveEventLoop, attributes: WindowAttributes) -> Result<Self> {
         let guard = ThreadGuard::take()?;
-        let template = ConfigTemplateBuilder::new().with_alpha_size(0).with_depth_size(0).with_stencil_size(0);
+        let template =
+            ConfigTemplateBuilder::new().with_alpha_size(0).with_depth_size(0).with_stencil_size(0);
         let (window, config) = DisplayBuilder::new()
             .with_window_attributes(Some(attributes))
             .build(event_loop, template, |configs| {

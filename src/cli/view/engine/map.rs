@@ -6,9 +6,7 @@ use std::time::{Duration, Instant};
 use anyhow::{Result, anyhow};
 use varikernel::context::window;
 use varikernel::glam::UVec2;
-use varikernel::image::{
-    Attribute, Format, Picture, ReadOptions, read_counts, write_counts, write_picture,
-};
+use varikernel::image::{Attribute, Format, Picture, ReadOptions, read_counts, write_counts, write_picture};
 use varikernel::measure::total_photons;
 use varikernel::settings::Settings;
 use varikernel::{CountBounds, DensityMap, Error, Gl, Image, RadiusPipeline};
@@ -61,8 +59,8 @@ impl MapEngine {
         }
         let bounds = CountBounds::of(&self.counts, settings.search);
         let density = DensityMap::upload(&self.gl, &self.counts, bounds)?;
-        let mut pipeline = RadiusPipeline::new(&self.gl, self.counts.size(), density.format(), settings)
-            .map_err(explain)?;
+        let mut pipeline =
+            RadiusPipeline::new(&self.gl, self.counts.size(), density.format(), settings).map_err(explain)?;
         pipeline.render(&density).map_err(explain)?;
         (self.density, self.pipeline) = (density, pipeline);
         (self.searched, self.radii) = (false, None);
