@@ -26,6 +26,7 @@ use tracing_subscriber::EnvFilter;
 const EXAMPLES: &str = "\
 Examples:
   varikernel render -o picture.png             a glass Cornell box, by photons with variable kernels
+  varikernel view                              the same live, in a window with every setting
   varikernel synth caustic -o map.exr          make a map to try things on
   varikernel radius map.exr -o radius.png      a picture of its radius map
   varikernel radius map.exr -o radius.exr --verify --method pyramid
@@ -99,7 +100,8 @@ pub(crate) fn run(cli: Cli) -> Result<Outcome> {
 /// Warnings always, more with `-v`, or as `RUST_LOG` says.
 pub(crate) fn log_to_stderr(verbose: u8) {
     let level = match verbose {
-        0 => "warn",
+        // winit warns of displays that have no size in millimetres, and the like.
+        0 => "warn,winit=error",
         1 => "info",
         _ => "debug",
     };

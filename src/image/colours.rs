@@ -84,3 +84,53 @@ fn read_png(file: impl BufRead + Seek) -> Result<Image<[u8; 3]>, Problem> {
     let size = UVec2::new(picture.width(), picture.height());
     Ok(Image::from_values(size, bytemuck::cast_slice(picture.as_raw()).to_vec()))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::{LayerFile, write_colours};
+    use super::*;
+
+    #[test]
+    fn pictures_come_back_as_they_were_written() {
+        let folder = tempfile::TempDir::new().expect("a folder");
+        let path = |name: &str| folder.path().join(name);
+        let size = UVec2::new(3, 2);
+        let radiance = Image::from_fn(size, |x, y| {
+            [x, y, 7].map(|value| 0.5 * f32::from(u16::try_from(value).expect("small")))
+        });
+        let other = Image::filled(size, [9.0; 3]);
+        let letters = ['R', 'G', 'B'];
+        let file = LayerFile::new(size).colours("direct", letters, &other).colours("", letters, &radiance);
+        file.write(&path("a.exr"), &[]).expect("written");
+        assert_eq!(read_colours(&path("a.exr")).expect("read"), Colours::Radiance(radiance));
+        let encoded =
+            Image::from_fn(size, |x, y| [x, y, 255].map(|value| u8::try_from(value).expect("small")));
+        write_colours(&path("a.png"), &encoded).expect("written");
+        assert_eq!(read_colours(&path("a.png")).expect("read"), Colours::Encoded(encoded));
+    }
+
+    #[test]
+    fn what_is_no_picture_is_refused() {
+        let folder = tempfile::TempDir::new().expect("a folder");
+        let path = |name: &str| folder.path().join(name);
+        let refused = |name: &str, words: &str| {
+            let error = read_colours(&path(name)).expect_err(name).to_string();
+            assert!(error.contains(words), "{name}: {error}");
+        };
+        refused("absent.png", "no such file");
+        refused("a.npy", "holds a map");
+        let size = UVec2::new(3, 2);
+        let file = LayerFile::new(size).values("depth", &Image::filled(size, 1.0));
+        file.write(&path("depth.exr"), &[]).expect("written");
+        refused("depth.exr", "help:");
+        let file = LayerFile::new(size).colours("", ['R', 'G', 'B'], &Image::filled(size, [1.0; 3]));
+        file.write(&path("cut.exr"), &[]).expect("written");
+        let bytes = std::fs::read(path("cut.exr")).expect("read");
+        for length in [4, bytes.len() / 2, bytes.len() - 1] {
+            std::fs::write(path("cut.exr"), &bytes[..length]).expect("written");
+            refused("cut.exr", "help:");
+        }
+        std::fs::write(path("letter.png"), "Dear reader").expect("written");
+        refused("letter.png", "the content is not PNG");
+    }
+}

@@ -132,11 +132,13 @@ impl Running {
             .with_title("varikernel")
             .with_inner_size(LogicalSize::new(width, height))
             .with_min_inner_size(LogicalSize::new(760, 420));
-        let window = GlWindow::open(event_loop, attributes).context("no window could be opened")?;
+        let window = GlWindow::open(event_loop, attributes)
+            .context("no window could be opened; `varikernel render` and `varikernel radius` need none")?;
         let mut state = State::new(window.gl(), wishes.choices.clone())?;
         state.most_steps = wishes.frames;
         if let Some(reference) = &wishes.reference {
-            state.open_file(reference);
+            state.open_reference(reference)?;
+            state.message = None;
         }
         state.view = wishes.view.filter(|&view| state.has(view)).unwrap_or(state.view);
         state.beside = wishes.beside;
@@ -228,7 +230,7 @@ impl Running {
             let whole = begun.elapsed();
             let stages = state.engine.times();
             let known = stages.iter().map(|&(_, time)| time).sum();
-            state.times.add(&stages, ("window", whole.saturating_sub(known)));
+            state.times.add(&stages, ("drawing", whole.saturating_sub(known)));
             state.adapt(whole);
         }
         let goes_on = !(state.paused || state.is_done());

@@ -12,7 +12,7 @@ use super::state::{Beside, State};
 use super::views::{View, place, ticks};
 
 /// Height of the strip of legends below the picture, in points.
-const LEGENDS: f32 = 46.0;
+const LEGENDS: f32 = 52.0;
 /// How near the line a drag has to begin to move it, in points.
 const NEAR: f32 = 9.0;
 
@@ -166,7 +166,7 @@ fn legend(ui: &Ui, state: &State, side: &Side<'_>, rect: Rect, letter: &str) {
     let painter = ui.painter();
     let (font, ink) = (FontId::proportional(12.0), Color32::from_gray(205));
     let Some(unit) = side.view.unit() else {
-        let text = format!("{letter}{}, tone-mapped, {:+.1} stops", side.view.words(), state.tone.exposure);
+        let text = format!("{letter}{}, tone-mapped at {:+.1} stops", side.view.name(), state.tone.exposure);
         painter.text(rect.center(), Align2::CENTER_CENTER, text, font, ink);
         return;
     };
@@ -175,16 +175,12 @@ fn legend(ui: &Ui, state: &State, side: &Side<'_>, rect: Rect, letter: &str) {
         painter.text(rect.center(), Align2::CENTER_CENTER, text, font, ink);
         return;
     }
-    let text = painter.layout_no_wrap(format!("{letter}{unit}"), font, ink);
-    let gap = text.size().x + 14.0;
-    painter.galley(pos2(rect.left(), rect.top() + 8.0), text, ink);
-    let bar = Rect::from_min_max(
-        pos2(rect.left() + gap, rect.top() + 10.0),
-        pos2(rect.right() - 12.0, rect.top() + 22.0),
-    );
+    painter.text(pos2(rect.left(), rect.top() + 4.0), Align2::LEFT_TOP, format!("{letter}{unit}"), font, ink);
+    let (top, bottom) = (rect.top() + 21.0, rect.top() + 31.0);
+    let bar = Rect::from_min_max(pos2(rect.left(), top), pos2(rect.right(), bottom));
     painter.add(Shape::mesh(colour_bar(bar)));
     let range = side.maps.range(side.view);
-    for value in ticks(range) {
+    for value in ticks(range, 26.0 / bar.width()) {
         let x = bar.left() + bar.width() * place(value, range);
         painter.vline(x, bar.bottom()..=bar.bottom() + 4.0, Stroke::new(1.0, ink));
         let at = pos2(x, bar.bottom() + 5.0);

@@ -9,11 +9,14 @@ use super::choices::word;
 use super::state::{Beside, State, grouped};
 use super::views::View;
 
+/// Width of the names of rows, in points.
+const NAMES: f32 = 62.0;
 const SIDES: [u32; 6] = [128, 256, 384, 512, 768, 1024];
 
 /// What is made, shown, searched and traced.
 pub(super) fn choices(ui: &mut Ui, state: &mut State) {
     ScrollArea::vertical().show(ui, |ui| {
+        ui.spacing_mut().slider_width = 104.0;
         source(ui, state);
         shown(ui, state);
         radius(ui, state);
@@ -41,7 +44,11 @@ fn heading(ui: &mut Ui, text: &str) {
 /// A row with its name on the left.
 fn row<R>(ui: &mut Ui, name: &str, contents: impl FnOnce(&mut Ui) -> R) -> R {
     ui.horizontal(|ui| {
-        ui.add_sized([74.0, 18.0], egui::Label::new(name).halign(egui::Align::Min));
+        let layout = egui::Layout::left_to_right(egui::Align::Center);
+        ui.allocate_ui_with_layout(egui::vec2(NAMES, 18.0), layout, |ui| {
+            ui.set_min_width(NAMES);
+            ui.label(name);
+        });
         contents(ui)
     })
     .inner
@@ -71,7 +78,7 @@ fn source(ui: &mut Ui, state: &mut State) {
             }
         }
     });
-    ui.weak("or drop a scene, map, reference or settings here");
+    ui.weak("or drop a scene, map or reference here");
     if state.engine.is_map() {
         return;
     }
@@ -229,7 +236,7 @@ fn photons(ui: &mut Ui, state: &mut State) {
 }
 
 /// The least and the most photons of a frame.
-pub(super) const LEAST: u32 = 500;
+const LEAST: u32 = 500;
 pub(super) const MOST: u32 = 1_000_000;
 
 fn files(ui: &mut Ui, state: &mut State) {

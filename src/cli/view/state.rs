@@ -12,10 +12,15 @@ use varikernel::view::Camera;
 use super::camera::Orbit;
 use super::choices::{CameraChoice, Choices};
 use super::engine::{Engine, Readout};
-use super::panels::{LEAST, MOST};
+use super::panels::MOST;
 use super::screen::{Screen, Snapshot};
 use super::times::Times;
 use super::views::View;
+
+/// Frames whose median says how long a frame takes.
+const RECENT: usize = 5;
+/// Below this, the photons of a frame take hardly any time beside everything else that it does.
+const LEAST_ADAPTED: u32 = 4000;
 
 /// What is shown on the right side of the line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -68,6 +73,8 @@ pub(super) struct State {
     pub(super) hovered: Option<UVec2>,
     pub(super) readout: Option<Readout>,
     pub(super) times: Times,
+    /// Seconds of the last frames.
+    recent: [f64; RECENT],
     pub(super) quits: bool,
 }
 
@@ -97,6 +104,7 @@ impl State {
             hovered: None,
             readout: None,
             times: Times::default(),
+            recent: [0.1; RECENT],
             quits: false,
             accepted: choices.clone(),
             choices,
@@ -128,13 +136,19 @@ impl State {
         if !self.choices.adapt || self.engine.is_map() {
             return;
         }
+        // One slow frame, as of a first step or when mirrors are gathered, says nothing of photons.
+        self.recent.rotate_left(1);
+        self.recent[RECENT - 1] = frame.as_secs_f64();
+        let mut sorted = self.recent;
+        sorted.sort_by(f64::total_cmp);
+        let usual = sorted[RECENT / 2].max(1e-4);
         let wanted = Duration::from_millis(self.choices.frame_milliseconds.into()).as_secs_f64();
         // By less than what is measured, as other things take their time as well.
-        let factor = (wanted / frame.as_secs_f64().max(1e-4)).powf(0.7).clamp(0.5, 1.5);
+        let factor = (wanted / usual).powf(0.7).clamp(0.7, 1.4);
         let photons = f64::from(self.choices.photons_per_frame) * factor;
         // A step of few percent is not worth a change.
         if (factor - 1.0).abs() > 0.05 {
-            self.choices.photons_per_frame = (photons as u32).clamp(LEAST, MOST);
+            self.choices.photons_per_frame = (photons as u32).clamp(LEAST_ADAPTED, MOST);
         }
     }
 
@@ -237,6 +251,7 @@ impl State {
         }
         (self.readout, self.hovered, self.paused) = (None, None, false);
         self.times = Times::default();
+        self.recent = [f64::from(self.choices.frame_milliseconds) / 1000.0; RECENT];
     }
 
     /// Takes any file that the window knows: saved settings (.json), a map, a reference (a picture), else a scene.
@@ -258,7 +273,11 @@ impl State {
         }
     }
 
-    fn open_reference(&mut self, path: &Path) -> Result<()> {
+    /// Takes a picture that errors are taken against from now on.
+    ///
+    /// # Errors
+    /// If it can't be read, or has another size than the picture.
+    pub(super) fn open_reference(&mut self, path: &Path) -> Result<()> {
         let reference = read_colours(path)?;
         let (size, wanted) = (reference.size(), self.engine.maps().size);
         if self.engine.is_map() {
@@ -360,7 +379,7 @@ impl State {
         } else {
             "working"
         };
-        format!("{} \u{b7} {} steps, {what} \u{b7} varikernel", self.engine.title(), self.engine.steps())
+        format!("{} \u{b7} step {}, {what} \u{b7} varikernel", self.engine.title(), self.engine.steps())
     }
 }
 

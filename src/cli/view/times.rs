@@ -41,8 +41,12 @@ impl Times {
             ui.weak("no frame yet");
             return;
         };
-        let totals = self.frames.iter().map(|frame| frame.iter().map(|(_, time)| time).sum::<f32>());
-        let top = super::views::round_up(totals.fold(1.0, f32::max));
+        let mut totals: Vec<f32> =
+            self.frames.iter().map(|frame| frame.iter().map(|(_, time)| time).sum()).collect();
+        totals.sort_by(f32::total_cmp);
+        // The slowest tenth may stick out, or a first frame would flatten all others.
+        let top =
+            super::views::round_up(1.2 * totals[totals.len() * 9 / 10].min(totals[totals.len() / 2] * 3.0));
         self.graph(ui, top);
         ui.add_space(4.0);
         let means: Vec<_> = last.iter().map(|&(label, _)| (label, self.mean(label))).collect();

@@ -142,14 +142,15 @@ pub(super) fn place(value: f32, [low, high]: [f32; 2]) -> f32 {
     ((value.clamp(low, high) + 1.0) / (low + 1.0)).ln() / ((high + 1.0) / (low + 1.0)).ln()
 }
 
-/// Values to be written on a legend's bar: its ends, and of 1, 2, 5, 10 and so on those that leave room.
-pub(super) fn ticks(range: [f32; 2]) -> Vec<f32> {
+/// Values to be written on a legend's bar: its ends, and of 1, 2, 5, 10 and so on those that leave `room` to their neighbours,
+/// as a share of the bar.
+pub(super) fn ticks(range: [f32; 2], room: f32) -> Vec<f32> {
     let mut ticks = vec![range[0]];
     let steps = (0..10).flat_map(|power| [1.0, 2.0, 5.0].map(|factor| factor * 10.0_f32.powi(power)));
     for value in steps.filter(|&value| value > range[0] && value < range[1]) {
         let at = place(value, range);
         let before = ticks.last().map_or(0.0, |&last| place(last, range));
-        if at - before > 0.09 && 1.0 - at > 0.11 {
+        if at - before > room && 1.0 - at > 1.2 * room {
             ticks.push(value);
         }
     }
@@ -166,6 +167,7 @@ mod tests {
         assert_eq!([0.0, 1.0, 1.5, 20.0, 21.0, 99.0].map(round_up), [1.0, 1.0, 2.0, 20.0, 50.0, 100.0]);
         // (1 + 1)² = 3 + 1: 1 lies halfway from 0 to 3.
         assert_eq!([0.0, 1.0, 3.0, 9.0].map(|value| place(value, [0.0, 3.0])), [0.0, 0.5, 1.0, 1.0]);
-        assert_eq!(ticks([1.0, 64.0]), [1.0, 2.0, 5.0, 10.0, 20.0, 64.0]);
+        assert_eq!(ticks([1.0, 64.0], 0.09), [1.0, 2.0, 5.0, 10.0, 20.0, 64.0]);
+        assert_eq!(ticks([1.0, 64.0], 0.25), [1.0, 5.0, 20.0, 64.0]);
     }
 }

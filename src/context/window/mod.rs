@@ -45,6 +45,9 @@ pub fn event_loop() -> Result<EventLoop<()>> {
             EventLoopError::Os(error) => error.to_string(),
             other => other.to_string(),
         };
+        // winit puts the line of its own source before the reason.
+        let after = reason.split_once(".rs:").and_then(|(_, after)| after.split_once(": "));
+        let reason = after.map_or(reason.as_str(), |(_, reason)| reason);
         Error::NoContext(format!("no display to open a window on: {reason}"))
     })
 }
@@ -180,8 +183,11 @@ fn context(
         .with_context_api(ContextApi::OpenGl(Some(Version::new(3, 3))))
         .with_profile(GlProfile::Core);
     make(wanted).map_err(|error| {
-        // A context that asks for nothing tells what there is.
-        let Ok(_old) = make(ContextAttributesBuilder::new()) else {
+        // A context that asks for little tells what there is.
+        let little = ContextAttributesBuilder::new()
+            .with_context_api(ContextApi::OpenGl(Some(Version::new(2, 1))))
+            .with_profile(GlProfile::Compatibility);
+        let Ok(_old) = make(little) else {
             return no_window("making an OpenGL 3.3 core context", &error);
         };
         // SAFETY: `_old` was just made current on this thread, and outlives the handle, which is dropped here.

@@ -19,6 +19,9 @@ pub(in crate::cli::view) struct MapEngine {
     gl: Gl,
     title: String,
     counts: Image<u32>,
+    /// Photons in all, and of the pixel with the most.
+    photons: u64,
+    most_photons: u32,
     density: DensityMap,
     /// The counts again, as the window's shader reads them.
     shown: window::Picture,
@@ -40,6 +43,8 @@ impl MapEngine {
             title: path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
             shown: window::Picture::values(gl, &counts.map(|count| count as f32))?,
             pipeline: RadiusPipeline::new(gl, counts.size(), density.format(), settings).map_err(explain)?,
+            photons: total_photons(&counts),
+            most_photons: counts.values().iter().copied().max().unwrap_or(0),
             density,
             counts,
             searched: false,
@@ -82,7 +87,7 @@ impl MapEngine {
     }
 
     pub(super) fn photons(&self) -> u64 {
-        total_photons(&self.counts)
+        self.photons
     }
 
     pub(super) fn steps(&self) -> u32 {
@@ -95,7 +100,6 @@ impl MapEngine {
 
     pub(super) fn maps(&self) -> Maps {
         let radii = self.pipeline.radii();
-        let most = self.counts.values().iter().copied().max().unwrap_or(0);
         Maps {
             size: self.counts.size(),
             beauty: None,
@@ -104,7 +108,7 @@ impl MapEngine {
             density: Some(self.shown.texture()),
             radii: Some(radii.texture()),
             limited: radii.limited_texture(),
-            most_photons: round_up(most as f32),
+            most_photons: round_up(self.most_photons as f32),
             max_radius: self.settings().search.max_radius,
         }
     }
