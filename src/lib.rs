@@ -66,7 +66,7 @@
 //! | `view` | a camera and its pixels: where a place is seen, along which ray a pixel looks |
 //! | `scene` | scene files: camera, lights, materials, triangles and spheres; ray casting |
 //! | `synth` | seeded test maps |
-//! | `context` | headless contexts: EGL devices and OSMesa |
+//! | `context` | contexts: EGL devices and OSMesa without a window, and a window's |
 //! | [`gl`] | programs, textures, passes, timers, saved state; with `context` and `capi` the only unsafe code |
 //! | [`settings`], [`image`], [`error`] | plain data that every module may name |
 //!

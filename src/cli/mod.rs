@@ -16,6 +16,8 @@ mod share_bar;
 mod stress;
 mod study;
 mod synth;
+#[cfg(feature = "window")]
+mod view;
 
 use std::io::{self, IsTerminal as _};
 
@@ -26,6 +28,7 @@ use tracing_subscriber::EnvFilter;
 const EXAMPLES: &str = "\
 Examples:
   varikernel render -o picture.png             a glass Cornell box, by photons with variable kernels
+  varikernel view                              the same live, in a window with every setting
   varikernel synth caustic -o map.exr          make a map to try things on
   varikernel radius map.exr -o radius.png      a picture of its radius map
   varikernel radius map.exr -o radius.exr --verify --method pyramid
@@ -57,6 +60,8 @@ pub(crate) struct Cli {
 #[derive(Debug, Subcommand)]
 enum Verb {
     Render(render::Args),
+    #[cfg(feature = "window")]
+    View(Box<view::Args>),
     Figures(figures::Args),
     Radius(radius::Args),
     // Boxed: it has by far the most options.
@@ -82,6 +87,8 @@ pub(crate) enum Outcome {
 pub(crate) fn run(cli: Cli) -> Result<Outcome> {
     match cli.verb {
         Verb::Render(args) => render::run(&args),
+        #[cfg(feature = "window")]
+        Verb::View(args) => view::run(&args),
         Verb::Figures(args) => figures::run(&args),
         Verb::Radius(args) => radius::run(&args),
         Verb::Compare(args) => compare::run(&args),
@@ -99,7 +106,8 @@ pub(crate) fn run(cli: Cli) -> Result<Outcome> {
 /// Warnings always, more with `-v`, or as `RUST_LOG` says.
 pub(crate) fn log_to_stderr(verbose: u8) {
     let level = match verbose {
-        0 => "warn",
+        // winit warns of displays that have no size in millimetres, and the like.
+        0 => "warn,winit=error",
         1 => "info",
         _ => "debug",
     };

@@ -1,7 +1,7 @@
-//! Headless OpenGL contexts: EGL devices without a display server, and OSMesa.
+//! OpenGL contexts: EGL devices without a display server, OSMesa, and (feature `window`) a window's.
 //!
 //! A context is made current on the thread that opens it and stays so until the last object made from its [`Gl`] is
-//! dropped; one headless context a thread at a time. It knows nothing of the stages.
+//! dropped; one context a thread at a time. It knows nothing of the stages.
 
 #![expect(unsafe_code, reason = "contexts are foreign handles; design rule 8 confines them to this module")]
 
@@ -9,6 +9,8 @@
 mod egl;
 #[cfg(feature = "osmesa")]
 mod osmesa;
+#[cfg(feature = "window")]
+pub mod window;
 
 use std::cell::Cell;
 use std::ffi::{CStr, c_void};
@@ -207,7 +209,7 @@ fn no_context(choice: &DeviceChoice, answers: &[String]) -> String {
     )
 }
 
-/// Held by the one headless context of a thread.
+/// Held by the one context of a thread that was opened here.
 #[derive(Debug)]
 struct ThreadGuard {
     open: Rc<Cell<bool>>,
@@ -222,8 +224,7 @@ impl ThreadGuard {
         let open = OPEN.with(Rc::clone);
         if open.replace(true) {
             return Err(Error::NoContext(
-                "a headless context is already open on this thread; drop everything made from it first"
-                    .to_owned(),
+                "a context is already open on this thread; drop everything made from it first".to_owned(),
             ));
         }
         Ok(Self { open })

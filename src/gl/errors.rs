@@ -62,7 +62,7 @@ impl Gl {
     }
 
     /// glow returned no name: the GL error tells why.
-    pub(super) fn failure(&self, what: &str) -> Error {
+    pub(crate) fn failure(&self, what: &str) -> Error {
         // SAFETY: the context is current where an object was just asked for.
         let code = self.live().map_or(glow::CONTEXT_LOST, |glow| unsafe { glow.get_error() });
         self.error(code, what, None)

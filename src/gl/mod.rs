@@ -143,7 +143,7 @@ impl Gl {
     ///
     /// # Safety
     /// As [`Gl::from_loader`].
-    #[cfg(any(feature = "egl", feature = "osmesa"))]
+    #[cfg(any(feature = "egl", feature = "osmesa", feature = "window"))]
     pub(crate) unsafe fn from_owned_context(
         context: Box<dyn Any>,
         loader: impl FnMut(&CStr) -> *const c_void,

@@ -72,6 +72,13 @@ impl TextureFormat {
         }
     }
 
+    /// What glTexImage2D takes: the internal format, components and type.
+    #[cfg(feature = "window")]
+    pub(crate) fn upload(self) -> (u32, u32, u32) {
+        let (components, kind) = self.transfer();
+        (self.internal(), components, kind)
+    }
+
     pub(crate) fn is_float(self) -> bool {
         !matches!(self, Self::R32Uint | Self::R16Uint | Self::R8Uint | Self::Rgba32Uint)
     }

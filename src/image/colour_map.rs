@@ -62,6 +62,12 @@ impl ColourMap {
     }
 
     fn colour_at(place: f64) -> [u8; 3] {
-        colorous::TURBO.eval_continuous(FIRST + (1.0 - FIRST) * place).as_array()
+        colour_of_bar(place)
     }
+}
+
+/// The colour at a place on a legend's bar, from 0 to 1, in all pictures of maps: sRGB.
+#[must_use]
+pub fn colour_of_bar(place: f64) -> [u8; 3] {
+    colorous::TURBO.eval_continuous(FIRST + (1.0 - FIRST) * place).as_array()
 }

@@ -25,6 +25,18 @@ pub(super) const SIGNATURE: &[u8] = &magic_number::BYTES;
 /// Bytes of a block that are accepted in any file; larger blocks have to be plausible for `max_pixels`.
 const USUAL_BLOCK: u64 = 64 << 20;
 
+/// Refuses what is larger than `options` allow, or claims more than its `length` in bytes can hold; leaves `file` at its start.
+#[cfg(feature = "render")]
+pub(super) fn check_sizes(
+    file: &mut (impl BufRead + Seek),
+    length: u64,
+    options: &ReadOptions<'_>,
+) -> Result<(), Problem> {
+    let meta_data = MetaData::read_from_buffered(&mut *file, false).map_err(problem)?;
+    check_headers(&meta_data.headers, length, options)?;
+    file.rewind().map_err(|error| problem(error.into()))
+}
+
 /// Reads one channel, at its largest resolution, from a file of `length` bytes.
 pub(super) fn read(
     file: impl BufRead + Seek,
@@ -169,7 +181,7 @@ fn is_largest(header: &Header, chunk: &Chunk) -> Result<bool, Problem> {
     Ok(place.level_index == Vec2(0, 0))
 }
 
-fn problem(error: ExrError) -> Problem {
+pub(super) fn problem(error: ExrError) -> Problem {
     match error {
         ExrError::NotSupported(what) => Problem::new(
             format!("an EXR file of a kind that can't be read here: {what}"),

@@ -161,7 +161,7 @@ pub(crate) fn open_file(path: &Path) -> Result<(BufReader<File>, u64)> {
 }
 
 /// Leaves the file at its start.
-fn check_signature(file: &mut BufReader<File>, format: Format) -> Result<(), Problem> {
+pub(super) fn check_signature(file: &mut BufReader<File>, format: Format) -> Result<(), Problem> {
     let unreadable = |error| Problem::damaged(format!("could not be read: {error}"));
     let mut start = Vec::new();
     file.by_ref().take(8).read_to_end(&mut start).map_err(unreadable)?;

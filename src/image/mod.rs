@@ -8,6 +8,8 @@ mod atomic;
 mod attribute;
 #[cfg(feature = "files")]
 mod colour_map;
+#[cfg(feature = "render")]
+mod colours;
 #[cfg(feature = "files")]
 mod counts;
 #[cfg(feature = "files")]
@@ -31,6 +33,10 @@ mod tone;
 pub use atomic::{check_writable, write_atomically};
 #[cfg(feature = "files")]
 pub use attribute::{Attribute, AttributeValue};
+#[cfg(feature = "files")]
+pub use colour_map::colour_of_bar;
+#[cfg(feature = "render")]
+pub use colours::{Colours, read_colours};
 #[cfg(feature = "files")]
 pub use counts::ReadOptions;
 #[cfg(feature = "scene")]

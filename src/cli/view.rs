@@ -1,0 +1,195 @@
+//! `varikernel view`: a window on a scene or a map, and the first host of the library.
+
+#![expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_precision_loss,
+    clippy::cast_sign_loss,
+    reason = "pixels, photons and milliseconds on a screen"
+)]
+
+mod app;
+mod camera;
+mod choices;
+mod engine;
+mod keys;
+mod middle;
+mod panels;
+mod readout;
+mod screen;
+mod state;
+mod times;
+mod views;
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context as _, Result, bail};
+use varikernel::context::window;
+use varikernel::glam::UVec2;
+use varikernel::image::{Format, check_writable};
+use varikernel::settings::{Edges, Kernel, Method, Order, RadiusChoice};
+
+use super::Outcome;
+use super::photons::parse_count;
+use super::render::parse_radius;
+use super::synth::parse_size;
+use app::{App, Wishes};
+use choices::Choices;
+use state::Beside;
+use views::View;
+
+const AFTER_HELP: &str = "\
+Keys and mouse:
+  drag, right drag, wheel   turn the camera, move it sideways, nearer and farther
+  R                         the camera back to where the scene put it
+  Space                     pause, go on
+  1 to 7                    picture, indirect, direct, density, radius, limited, error
+  B, S                      snapshot beside the picture; radius map beside it, or nothing
+  P, Ctrl+S                 save the picture; save the settings
+  F1, Q                     all keys; quit
+Scenes, maps, references (a picture as EXR or PNG) and saved settings (JSON) may be dropped on the window.
+Without a display, `varikernel render` and `varikernel radius` make the same files.";
+
+/// Open a window on a scene or a map: the picture live, every stage of it, and all settings.
+///
+/// Photons are traced frame after frame while nothing moves; with a software renderer, fewer in each, so that the window answers.
+#[derive(Debug, clap::Args)]
+#[command(after_help = AFTER_HELP)]
+pub(crate) struct Args {
+    /// A scene file, one of cornell-glass, cornell-boxes, cornell-empty, mirror-ring, water, a map (EXR, PNG or NPY, counts per
+    /// pixel), or settings that the window saved (JSON).
+    #[arg(default_value = "cornell-glass", value_name = "SCENE|MAP")]
+    source: PathBuf,
+
+    /// Columns and rows of a scene's picture.
+    #[arg(long, default_value = "512x512", value_parser = parse_size, value_name = "WIDTHxHEIGHT")]
+    size: UVec2,
+
+    /// Columns and rows of the window.
+    #[arg(long, default_value = "1340x830", value_parser = parse_size, value_name = "WIDTHxHEIGHT")]
+    window: UVec2,
+
+    /// n: photons that a kernel or box has to hold [default: 400 for scenes, 25 for maps].
+    #[arg(short = 'n', long, value_name = "N")]
+    min_photons: Option<u32>,
+
+    /// MR: the largest radius, in pixels [default: 64 for scenes, 32 for maps].
+    #[arg(short = 'r', long, value_name = "MR")]
+    max_radius: Option<u32>,
+
+    /// Width of the kernels: `variable`, or `fixed:PIXELS` for the same everywhere.
+    #[arg(long, default_value = "variable", value_parser = parse_radius, value_name = "RADIUS")]
+    radius: RadiusChoice,
+
+    /// Falloff of a kernel from its middle to its edge.
+    #[arg(long, value_enum, default_value_t = Kernel::Silverman)]
+    kernel: Kernel,
+
+    /// Photons of each frame [default: as many as frames of 100 ms have time for].
+    #[arg(long, value_parser = parse_count, value_name = "NUMBER")]
+    photons_per_frame: Option<u32>,
+
+    /// A whole number; the same seed and photons of each frame give the same picture.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+
+    /// Brightness, in stops: each doubles the light [default: what suits the picture].
+    #[arg(long, value_name = "STOPS", allow_negative_numbers = true)]
+    exposure: Option<f32>,
+
+    /// What is shown first.
+    #[arg(long, value_enum)]
+    view: Option<View>,
+
+    /// What is shown beside it.
+    #[arg(long, value_enum, value_name = "VIEW")]
+    beside: Option<View>,
+
+    /// A picture of the same size that errors are taken against: EXR or PNG.
+    #[arg(long, value_name = "FILE")]
+    reference: Option<PathBuf>,
+
+    /// Stop after so many frames' photons.
+    #[arg(long, value_name = "NUMBER")]
+    frames: Option<u32>,
+
+    /// Save the window as PNG after --frames, and quit.
+    #[arg(long, value_name = "FILE", requires = "frames")]
+    screenshot: Option<PathBuf>,
+}
+
+pub(crate) fn run(args: &Args) -> Result<Outcome> {
+    let choices = choices(args)?;
+    if let Some(exposure) = choices.exposure.filter(|exposure| !exposure.is_finite()) {
+        bail!("--exposure {exposure} is not possible: give a number of stops");
+    }
+    if let Some(path) = &args.screenshot {
+        if Format::of(path)? != Format::Png {
+            bail!("{}: a window is saved as PNG\nhelp: use a file name that ends in .png", path.display());
+        }
+        check_writable(path)?;
+    }
+    // A file that is not there needs no window to be told.
+    if !is_settings(&args.source) {
+        check_source(Path::new(&choices.source))?;
+    }
+    let headless = "a window needs a display; `varikernel render` and `varikernel radius` make the same files without one";
+    let event_loop = window::event_loop().context(headless)?;
+    let wishes = Wishes {
+        choices,
+        window: args.window.to_array(),
+        view: args.view,
+        beside: args.beside.map_or(Beside::Nothing, Beside::View),
+        reference: args.reference.clone(),
+        frames: args.frames,
+        screenshot: args.screenshot.clone(),
+    };
+    let mut app = App::new(wishes);
+    event_loop.run_app(&mut app).context("the window's events stopped coming")?;
+    app.result()?;
+    Ok(Outcome::Done)
+}
+
+fn is_settings(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json"))
+}
+
+/// Refuses a scene or map that is not there.
+fn check_source(path: &Path) -> Result<()> {
+    if Format::of(path).is_ok() {
+        varikernel::image::read_counts(path, &varikernel::image::ReadOptions::default())?;
+    } else {
+        super::photons::load(path)?;
+    }
+    Ok(())
+}
+
+fn choices(args: &Args) -> Result<Choices> {
+    if is_settings(&args.source) {
+        return Choices::load(&args.source);
+    }
+    let (n, max) = if Format::of(&args.source).is_ok() { (25, 32) } else { (400, 64) };
+    let (variable, fixed_radius) = match args.radius {
+        RadiusChoice::Variable => (true, 2),
+        RadiusChoice::Fixed(radius) => (false, radius),
+    };
+    Ok(Choices {
+        source: args.source.to_string_lossy().into_owned(),
+        size: args.size.to_array(),
+        variable,
+        fixed_radius,
+        min_photons: args.min_photons.unwrap_or(n),
+        max_radius: args.max_radius.unwrap_or(max),
+        kernel: args.kernel,
+        method: Method::SummedAreaTable,
+        order: Order::Bracketed,
+        edges: Edges::Scale,
+        photons_per_frame: args.photons_per_frame.unwrap_or(20_000),
+        adapt: args.photons_per_frame.is_none(),
+        frame_milliseconds: 100,
+        photons: 50_000_000,
+        bounces: 8,
+        seed: args.seed,
+        exposure: args.exposure,
+        camera: None,
+    })
+}

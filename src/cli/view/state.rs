@@ -1,0 +1,399 @@
+//! Everything that the window knows, and what becomes of it from frame to frame.
+
+use std::path::Path;
+use std::time::Duration;
+
+use anyhow::{Result, bail};
+use varikernel::Gl;
+use varikernel::glam::UVec2;
+use varikernel::image::{Format, ReadOptions, ToneMap, read_colours, read_counts};
+use varikernel::view::Camera;
+
+use super::camera::Orbit;
+use super::choices::{CameraChoice, Choices};
+use super::engine::{Engine, Readout};
+use super::panels::MOST;
+use super::screen::{Screen, Snapshot};
+use super::times::Times;
+use super::views::View;
+
+/// Frames whose median says how long a frame takes.
+const RECENT: usize = 5;
+/// Below this, the photons of a frame take hardly any time beside everything else that it does.
+const LEAST_ADAPTED: u32 = 4000;
+
+/// What is shown on the right side of the line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Beside {
+    Nothing,
+    View(View),
+    /// The same view of the snapshot.
+    Snapshot,
+}
+
+/// What a person is told until the next thing happens.
+pub(super) struct Message {
+    pub(super) text: String,
+    pub(super) is_error: bool,
+}
+
+/// File names in the fields of the panels.
+pub(super) struct Paths {
+    pub(super) open: String,
+    pub(super) picture: String,
+    pub(super) settings: String,
+}
+
+pub(super) struct State {
+    pub(super) gl: Gl,
+    pub(super) engine: Engine,
+    pub(super) choices: Choices,
+    /// The choices that the engine has taken last.
+    accepted: Choices,
+    /// Of a scene.
+    pub(super) orbit: Option<Orbit>,
+    pub(super) screen: Screen,
+    pub(super) tone: ToneMap,
+    /// Steps at which the exposure was fitted last; 0 before that.
+    fitted: u32,
+    pub(super) view: View,
+    pub(super) beside: Beside,
+    /// Where the line is, as a share of the picture's width.
+    pub(super) split: f32,
+    /// Whether the drag that goes on moves the line.
+    pub(super) drags_line: bool,
+    pub(super) snapshot: Option<Snapshot>,
+    pub(super) paused: bool,
+    /// Steps after which the picture is left as it is.
+    pub(super) most_steps: Option<u32>,
+    pub(super) help: bool,
+    pub(super) message: Option<Message>,
+    pub(super) paths: Paths,
+    /// The pixel under the mouse, and what it holds.
+    pub(super) hovered: Option<UVec2>,
+    pub(super) readout: Option<Readout>,
+    pub(super) times: Times,
+    /// Seconds of the last frames.
+    recent: [f64; RECENT],
+    pub(super) quits: bool,
+}
+
+impl State {
+    pub(super) fn new(gl: &Gl, choices: Choices) -> Result<Self> {
+        let engine = Engine::open(gl, &choices)?;
+        let mut state = Self {
+            gl: gl.clone(),
+            orbit: None,
+            screen: Screen::new(gl)?,
+            tone: ToneMap::default(),
+            fitted: 0,
+            view: View::Picture,
+            beside: Beside::Nothing,
+            split: 0.5,
+            drags_line: false,
+            snapshot: None,
+            paused: false,
+            most_steps: None,
+            help: false,
+            message: None,
+            paths: Paths {
+                open: String::new(),
+                picture: "picture.png".to_owned(),
+                settings: "view.json".to_owned(),
+            },
+            hovered: None,
+            readout: None,
+            times: Times::default(),
+            recent: [0.1; RECENT],
+            quits: false,
+            accepted: choices.clone(),
+            choices,
+            engine,
+        };
+        state.source_changed();
+        Ok(state)
+    }
+
+    /// Takes a step if one is due. Errors are told, and nothing more is done until choices change.
+    ///
+    /// Says whether a step was taken.
+    pub(super) fn advance(&mut self) -> bool {
+        self.take_choices();
+        if self.paused || self.is_done() {
+            return false;
+        }
+        if let Err(error) = self.engine.step().and_then(|()| self.fit_exposure()) {
+            self.paused = true;
+            self.tell_error(&error);
+            return false;
+        }
+        self.readout = None;
+        true
+    }
+
+    /// More photons a frame where frames are faster than was chosen, fewer where they are slower.
+    pub(super) fn adapt(&mut self, frame: Duration) {
+        if !self.choices.adapt || self.engine.is_map() {
+            return;
+        }
+        // One slow frame, as of a first step or when mirrors are gathered, says nothing of photons.
+        self.recent.rotate_left(1);
+        self.recent[RECENT - 1] = frame.as_secs_f64();
+        let mut sorted = self.recent;
+        sorted.sort_by(f64::total_cmp);
+        let usual = sorted[RECENT / 2].max(1e-4);
+        let wanted = Duration::from_millis(self.choices.frame_milliseconds.into()).as_secs_f64();
+        // By less than what is measured, as other things take their time as well.
+        let factor = (wanted / usual).powf(0.7).clamp(0.7, 1.4);
+        let photons = f64::from(self.choices.photons_per_frame) * factor;
+        // A step of few percent is not worth a change.
+        if (factor - 1.0).abs() > 0.05 {
+            self.choices.photons_per_frame = (photons as u32).clamp(LEAST_ADAPTED, MOST);
+        }
+    }
+
+    /// Whether nothing more is to do.
+    pub(super) fn is_done(&self) -> bool {
+        let steps = self.most_steps.is_some_and(|most| self.engine.steps() >= most);
+        steps || self.engine.is_done(&self.choices)
+    }
+
+    /// Hands what was chosen to the engine; what it refuses is taken back.
+    fn take_choices(&mut self) {
+        let camera = self.orbit.map(|orbit| orbit.camera());
+        self.choices.camera =
+            self.orbit.filter(|orbit| !orbit.is_home()).map(|orbit| CameraChoice::from(orbit.camera()));
+        if self.choices == self.accepted {
+            return;
+        }
+        let camera = camera.or_else(|| self.engine.camera().map(|(camera, _)| camera));
+        let nowhere = Camera {
+            position: [0.0; 3].into(),
+            direction: [0.0, 0.0, 1.0].into(),
+            up: [0.0, 1.0, 0.0].into(),
+            vertical_fov_degrees: 45.0,
+        };
+        match self.engine.change(&self.choices, camera.unwrap_or(nowhere)) {
+            Ok(()) => self.accepted = self.choices.clone(),
+            Err(error) => {
+                self.choices = self.accepted.clone();
+                self.tell_error(&error);
+            }
+        }
+        self.readout = None;
+    }
+
+    /// Until a person chooses an exposure: what suits the picture, asked for less and less often.
+    fn fit_exposure(&mut self) -> Result<()> {
+        if let Some(exposure) = self.choices.exposure {
+            self.tone.exposure = exposure;
+            return Ok(());
+        }
+        let steps = self.engine.steps();
+        if steps >= 2 * self.fitted.max(1) || self.fitted == 0 {
+            if let Some(picture) = self.engine.read()? {
+                self.tone = ToneMap::fitting(&picture);
+            }
+            self.fitted = steps;
+        }
+        Ok(())
+    }
+
+    /// Lets the exposure suit the picture again.
+    pub(super) fn fit_again(&mut self) {
+        (self.choices.exposure, self.fitted) = (None, 0);
+        if let Err(error) = self.fit_exposure() {
+            self.tell_error(&error);
+        }
+    }
+
+    /// Opens a scene or map by its name; on an error the old one stays.
+    pub(super) fn open_source(&mut self, source: &str) {
+        let choices = Choices { source: source.to_owned(), camera: None, ..self.choices.clone() };
+        self.open_choices(choices);
+    }
+
+    fn open_choices(&mut self, choices: Choices) {
+        match Engine::open(&self.gl, &choices) {
+            Ok(engine) => {
+                self.engine = engine;
+                self.accepted = choices.clone();
+                self.choices = choices;
+                self.source_changed();
+                self.tell(format!("opened {}", self.choices.source));
+            }
+            Err(error) => self.tell_error(&error),
+        }
+    }
+
+    fn source_changed(&mut self) {
+        self.orbit = self.engine.camera().map(|(home, bounds)| {
+            let mut orbit = Orbit::new(home, bounds);
+            if let Some(camera) = self.choices.camera {
+                orbit.place(camera.into(), bounds);
+            }
+            orbit
+        });
+        if self.engine.is_map() {
+            self.view = if self.view.is_of_maps() { self.view } else { View::Radius };
+            if matches!(self.beside, Beside::View(view) if !view.is_of_maps()) {
+                self.beside = Beside::Nothing;
+            }
+            self.paths.picture = "radius.png".to_owned();
+        } else {
+            self.paths.picture = "picture.png".to_owned();
+        }
+        self.paths.open.clone_from(&self.choices.source);
+        self.fitted = 0;
+        self.snapshot = None;
+        if self.beside == Beside::Snapshot {
+            self.beside = Beside::Nothing;
+        }
+        (self.readout, self.hovered, self.paused) = (None, None, false);
+        self.times = Times::default();
+        self.recent = [f64::from(self.choices.frame_milliseconds) / 1000.0; RECENT];
+    }
+
+    /// Takes any file that the window knows: saved settings (.json), a map, a reference (a picture), else a scene.
+    pub(super) fn open_file(&mut self, path: &Path) {
+        let name = path.to_string_lossy().into_owned();
+        if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json")) {
+            match Choices::load(path) {
+                Ok(choices) => self.open_choices(choices),
+                Err(error) => self.tell_error(&error),
+            }
+        } else if Format::of(path).is_err() || read_counts(path, &ReadOptions::default()).is_ok() {
+            self.open_source(&name);
+        } else if let Err(picture) = self.open_reference(path) {
+            // It is neither: what a map lacks is told, and for colours what a reference lacks.
+            match read_colours(path) {
+                Ok(_) => self.tell_error(&picture),
+                Err(_) => self.open_source(&name),
+            }
+        }
+    }
+
+    /// Takes a picture that errors are taken against from now on.
+    ///
+    /// # Errors
+    /// If it can't be read, or has another size than the picture.
+    pub(super) fn open_reference(&mut self, path: &Path) -> Result<()> {
+        let reference = read_colours(path)?;
+        let (size, wanted) = (reference.size(), self.engine.maps().size);
+        if self.engine.is_map() {
+            bail!("{}: a picture; a reference is for scenes, and this is a map", path.display());
+        }
+        if size != wanted {
+            bail!(
+                "{}: the reference has {} x {} pixels, and the picture {} x {}\nhelp: choose the size of the picture to fit",
+                path.display(),
+                size.x,
+                size.y,
+                wanted.x,
+                wanted.y
+            );
+        }
+        self.screen.set_reference(&reference)?;
+        self.view = View::Error;
+        self.tell(format!("errors are against {}", path.display()));
+        Ok(())
+    }
+
+    /// Whether a view has something to show.
+    pub(super) fn has(&self, view: View) -> bool {
+        match view {
+            View::Error => self.screen.reference_size() == Some(self.engine.maps().size),
+            View::Density => true,
+            View::Radius | View::Limited => self.choices.variable || self.engine.is_map(),
+            _ => !self.engine.is_map(),
+        }
+    }
+
+    /// Keeps the maps as they are, to be compared with those of other choices.
+    pub(super) fn take_snapshot(&mut self) {
+        let words = match (self.engine.is_map(), self.choices.variable) {
+            (false, false) => format!("radius {}", self.choices.fixed_radius),
+            _ => format!("n = {}, MR = {}", self.choices.min_photons, self.choices.max_radius),
+        };
+        match Snapshot::of(&self.gl, &self.engine.maps(), words) {
+            Ok(snapshot) => {
+                self.snapshot = Some(snapshot);
+                self.beside = Beside::Snapshot;
+                self.tell("kept: A goes on, B is the snapshot".to_owned());
+            }
+            Err(error) => self.tell_error(&error),
+        }
+    }
+
+    pub(super) fn save_picture(&mut self) {
+        let path = self.paths.picture.clone();
+        match self.engine.save(Path::new(&path), self.tone) {
+            Ok(()) => self.tell(format!("written: {path}")),
+            Err(error) => self.tell_error(&error),
+        }
+    }
+
+    pub(super) fn save_settings(&mut self) {
+        let path = self.paths.settings.clone();
+        match self.choices.save(Path::new(&path), self.command()) {
+            Ok(()) => self.tell(format!("written: {path}")),
+            Err(error) => self.tell_error(&error),
+        }
+    }
+
+    /// The same without a window.
+    pub(super) fn command(&self) -> String {
+        self.choices.command(self.engine.photons(), self.engine.is_map())
+    }
+
+    /// What the pixel under the mouse holds, once a step.
+    pub(super) fn inspect(&mut self) {
+        let Some(pixel) = self.hovered else {
+            self.readout = None;
+            return;
+        };
+        if self.engine.steps() == 0 || self.readout.as_ref().is_some_and(|readout| readout.pixel == pixel) {
+            return;
+        }
+        match self.engine.inspect(pixel) {
+            Ok(readout) => self.readout = Some(readout),
+            Err(error) => self.tell_error(&error),
+        }
+    }
+
+    pub(super) fn tell(&mut self, text: String) {
+        self.message = Some(Message { text, is_error: false });
+    }
+
+    pub(super) fn tell_error(&mut self, error: &anyhow::Error) {
+        let causes: Vec<_> = error.chain().map(ToString::to_string).collect();
+        self.message = Some(Message { text: causes.join(": "), is_error: true });
+    }
+
+    /// For the window's title.
+    pub(super) fn title(&self) -> String {
+        let what = if self.is_done() {
+            "done"
+        } else if self.paused {
+            "paused"
+        } else {
+            "working"
+        };
+        format!("{} \u{b7} step {}, {what} \u{b7} varikernel", self.engine.title(), self.engine.steps())
+    }
+}
+
+/// 1234567 as 1,234,567.
+pub(super) fn grouped(number: u64) -> String {
+    let digits = number.to_string();
+    let parts: Vec<_> = digits.as_bytes().rchunks(3).rev().map(String::from_utf8_lossy).collect();
+    parts.join(",")
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn thousands_are_apart() {
+        assert_eq!([0, 999, 1000, 1_234_567].map(super::grouped), ["0", "999", "1,000", "1,234,567"]);
+    }
+}
