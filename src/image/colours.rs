@@ -65,10 +65,10 @@ fn read_exr(mut file: impl BufRead + Seek, length: u64) -> Result<Image<[f32; 3]
         .all_attributes()
         .from_buffered(file)
         .map_err(exr::problem)?;
-    let size = image.layer_data.size;
+    let sides = image.layer_data.size;
     let (_, pixels) = image.layer_data.channel_data.pixels;
-    let side = |side: usize| u32::try_from(side).unwrap_or_else(|_| unreachable!("sizes were checked"));
-    Ok(Image::from_values(UVec2::new(side(size.width()), side(size.height())), pixels))
+    let whole = |side: usize| u32::try_from(side).unwrap_or_else(|_| unreachable!("sizes were checked"));
+    Ok(Image::from_values(UVec2::new(whole(sides.width()), whole(sides.height())), pixels))
 }
 
 fn read_png(file: impl BufRead + Seek) -> Result<Image<[u8; 3]>, Problem> {

@@ -20,10 +20,10 @@ use x11rb::rust_connection::RustConnection;
 use x11rb::wrapper::ConnectionExt as _;
 
 /// As long as anything may take on a busy machine without a GPU.
-const PATIENCE: Duration = Duration::from_secs(120);
+const PATIENCE: Duration = Duration::from_mins(2);
 
 /// Xvfb, which ends with this.
-pub struct Display {
+pub(crate) struct Display {
     server: Child,
     name: String,
     connection: RustConnection,
@@ -39,7 +39,7 @@ impl Drop for Display {
 
 impl Display {
     /// Starts Xvfb on a number that is free.
-    pub fn new() -> Self {
+    pub(crate) fn new() -> Self {
         let mut server = Command::new("Xvfb")
             .args(["-displayfd", "1", "-screen", "0", "1280x1000x24", "-nolisten", "tcp"])
             .stdout(Stdio::piped())
@@ -55,14 +55,14 @@ impl Display {
     }
 
     /// The program, to be run here.
-    pub fn command(&self, arguments: &[&str]) -> Command {
+    pub(crate) fn command(&self, arguments: &[&str]) -> Command {
         let mut command = program();
         command.args(arguments).env("DISPLAY", &self.name);
         command
     }
 
     /// Runs the program here until its title holds `words`.
-    pub fn open(&self, arguments: &[&str], words: &str) -> Program<'_> {
+    pub(crate) fn open(&self, arguments: &[&str], words: &str) -> Program<'_> {
         let child = self.command(arguments).spawn().unwrap();
         let mut program = Program { display: self, child, window: self.root };
         program.window = wait(|| program.find());
@@ -87,7 +87,7 @@ impl Display {
 }
 
 /// The program, without any display.
-pub fn program() -> Command {
+pub(crate) fn program() -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_varikernel"));
     command.arg("view").env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY").env_remove("WAYLAND_SOCKET");
     command.env_remove("RUST_LOG");
@@ -95,7 +95,7 @@ pub fn program() -> Command {
 }
 
 /// The program in its window; killed with this if it still runs.
-pub struct Program<'a> {
+pub(crate) struct Program<'a> {
     display: &'a Display,
     child: Child,
     window: Window,
@@ -123,11 +123,11 @@ impl Program<'_> {
         property.reply().map_or(String::new(), |reply| String::from_utf8(reply.value).unwrap())
     }
 
-    pub fn title(&self) -> String {
+    pub(crate) fn title(&self) -> String {
         self.title_of(self.window)
     }
 
-    pub fn wait_for(&mut self, words: &str) {
+    pub(crate) fn wait_for(&mut self, words: &str) {
         wait(|| {
             assert!(self.child.try_wait().unwrap().is_none(), "the program ended: {}", self.title());
             self.title().contains(words).then_some(())
@@ -135,7 +135,7 @@ impl Program<'_> {
     }
 
     /// What is seen of the window.
-    pub fn look(&self) -> Image<[u8; 3]> {
+    pub(crate) fn look(&self) -> Image<[u8; 3]> {
         let connection = &self.display.connection;
         let size = connection.get_geometry(self.window).unwrap().reply().unwrap();
         let (width, height) = (size.width, size.height);
@@ -148,7 +148,7 @@ impl Program<'_> {
 
     /// What is seen once it is what `expected` says.
     #[track_caller]
-    pub fn look_until(
+    pub(crate) fn look_until(
         &self,
         what: &str,
         mut expected: impl FnMut(&Image<[u8; 3]>) -> bool,
@@ -164,12 +164,12 @@ impl Program<'_> {
         }
     }
 
-    pub fn point(&self, at: (i16, i16)) {
+    pub(crate) fn point(&self, at: (i16, i16)) {
         self.display.fake(MOTION_NOTIFY_EVENT, 0, at);
     }
 
     /// With the left button, from one place to another.
-    pub fn drag(&self, from: (i16, i16), to: (i16, i16)) {
+    pub(crate) fn drag(&self, from: (i16, i16), to: (i16, i16)) {
         self.point(from);
         sleep(Duration::from_millis(100));
         self.display.fake(BUTTON_PRESS_EVENT, 1, from);
@@ -183,7 +183,7 @@ impl Program<'_> {
     }
 
     /// Presses the key of a letter.
-    pub fn press(&self, letter: char) {
+    pub(crate) fn press(&self, letter: char) {
         let setup = self.display.connection.setup();
         let (first, last) = (setup.min_keycode, setup.max_keycode);
         let keys =
@@ -195,20 +195,20 @@ impl Program<'_> {
         self.display.fake(KEY_RELEASE_EVENT, code, (0, 0));
     }
 
-    pub fn resize(&self, width: u32, height: u32) {
+    pub(crate) fn resize(&self, width: u32, height: u32) {
         let connection = &self.display.connection;
         let aux = ConfigureWindowAux::new().width(width).height(height);
         connection.configure_window(self.window, &aux).unwrap().check().unwrap();
     }
 
     /// As the button of a window manager does.
-    pub fn close(&self) {
+    pub(crate) fn close(&self) {
         let delete = self.display.atom("WM_DELETE_WINDOW");
         self.send("WM_PROTOCOLS", [delete, 0, 0, 0, 0]);
     }
 
     /// Drops a file, as file managers do: the XDND protocol from the side of its source.
-    pub fn drop_file(&self, path: &Path) {
+    pub(crate) fn drop_file(&self, path: &Path) {
         let (display, connection) = (self.display, &self.display.connection);
         let source = connection.generate_id().unwrap();
         let (aux, parent) = (CreateWindowAux::new(), display.root);
@@ -256,7 +256,7 @@ impl Program<'_> {
     }
 
     /// How it ended.
-    pub fn end(mut self) -> ExitStatus {
+    pub(crate) fn end(mut self) -> ExitStatus {
         wait(|| self.child.try_wait().unwrap())
     }
 }

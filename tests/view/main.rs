@@ -137,7 +137,7 @@ fn what_is_dropped_is_opened_and_what_is_broken_leaves_the_old_picture() {
     varikernel::image::write_counts(&map, "photons", &Image::filled(UVec2::new(9, 7), 3), &[]).unwrap();
 
     let display = Display::new();
-    let mut program = display.open(&SMALL, DONE);
+    let program = display.open(&SMALL, DONE);
     program.point((150, 630));
     let before = program.look();
     program.drop_file(&broken);

@@ -237,7 +237,7 @@ impl Running {
         if goes_on || wait.is_zero() {
             self.window.window().request_redraw();
         } else {
-            self.wake = Instant::now().checked_add(wait).filter(|_| wait < Duration::from_secs(3600));
+            self.wake = Instant::now().checked_add(wait).filter(|_| wait < Duration::from_hours(1));
         }
     }
 }

@@ -156,7 +156,7 @@ impl Choices {
 }
 
 /// The word of an option.
-pub(super) fn word(value: impl ValueEnum) -> String {
+pub(super) fn word(value: impl ValueEnum + Copy) -> String {
     value.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
 }
 

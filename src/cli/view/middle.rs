@@ -150,8 +150,7 @@ pub(super) fn sides<'a>(state: &'a State, maps: &'a super::views::Maps) -> [Side
 fn legends(ui: &Ui, state: &State, strip: Rect) {
     let maps = state.engine.maps();
     let [a, b] = sides(state, &maps);
-    let is_same = b.view == a.view && b.maps.range(b.view) == a.maps.range(a.view);
-    if state.beside == Beside::Nothing || is_same {
+    if state.beside == Beside::Nothing {
         let wide = strip.width().min(560.0);
         let rect = Rect::from_center_size(strip.center(), vec2(wide, strip.height()));
         legend(ui, state, &a, rect, "");

@@ -164,9 +164,11 @@ mod tests {
 
     #[test]
     fn legends_by_hand() {
-        assert_eq!([0.0, 1.0, 1.5, 20.0, 21.0, 99.0].map(round_up), [1.0, 1.0, 2.0, 20.0, 50.0, 100.0]);
+        let rounded = [0.0, 1.0, 1.5, 20.0, 21.0, 99.0].map(|value| round_up(value) as u32);
+        assert_eq!(rounded, [1, 1, 2, 20, 50, 100]);
         // (1 + 1)² = 3 + 1: 1 lies halfway from 0 to 3.
-        assert_eq!([0.0, 1.0, 3.0, 9.0].map(|value| place(value, [0.0, 3.0])), [0.0, 0.5, 1.0, 1.0]);
+        let places = [0.0, 1.0, 3.0, 9.0].map(|value| (100.0 * place(value, [0.0, 3.0])).round() as u32);
+        assert_eq!(places, [0, 50, 100, 100]);
         assert_eq!(ticks([1.0, 64.0], 0.09), [1.0, 2.0, 5.0, 10.0, 20.0, 64.0]);
         assert_eq!(ticks([1.0, 64.0], 0.25), [1.0, 5.0, 20.0, 64.0]);
     }

@@ -1,5 +1,7 @@
 //! A shader of the program's own, drawn over a texture that the window shows.
 
+use std::fmt::Write as _;
+
 use glam::{IVec2, UVec2, Vec2};
 use glow::HasContext as _;
 
@@ -182,13 +184,12 @@ impl Drop for Canvas {
 fn link(gl: &Gl, label: &str, fragment: &str) -> Result<glow::Program> {
     let glow = gl.glow();
     let (_, vertex) = glsl!("common/full_screen.vert");
-    let refused = |log: String, source: &str| Error::Shader {
-        label: label.to_owned(),
-        log,
-        source_text: (1..)
-            .zip(source.lines())
-            .map(|(number, line)| format!("{number:<4} {line}\n"))
-            .collect(),
+    let refused = |log: String, source: &str| {
+        let mut source_text = String::new();
+        for (number, line) in (1..).zip(source.lines()) {
+            writeln!(source_text, "{number:<4} {line}").expect("writing to a string");
+        }
+        Error::Shader { label: label.to_owned(), log, source_text }
     };
     // SAFETY: the context is current while the handle lives.
     unsafe {

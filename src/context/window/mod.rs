@@ -118,10 +118,7 @@ impl GlWindow {
             let gl = Gl::from_owned_context(Box::new(Rc::clone(&held)), loader)?;
             (gl, glow::Context::from_loader_function_cstr(loader))
         };
-        // It stays on this thread; egui asks for an `Arc` all the same.
-        #[expect(clippy::arc_with_non_send_sync, reason = "egui_glow takes it so")]
-        let glow = Arc::new(glow);
-        Ok(Self { gl, glow, held })
+        Ok(Self { gl, glow: Arc::new(glow), held })
     }
 
     /// The context, for the library.
