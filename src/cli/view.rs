@@ -14,6 +14,7 @@ mod engine;
 mod keys;
 mod middle;
 mod panels;
+mod passes;
 mod readout;
 mod screen;
 mod state;

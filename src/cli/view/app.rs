@@ -8,6 +8,7 @@ use anyhow::{Context as _, Result};
 use egui::{CentralPanel, Frame, Panel, TextureId, ViewportId};
 use varikernel::Image;
 use varikernel::context::window::GlWindow;
+use varikernel::gl::StageTimes;
 use varikernel::glam::UVec2;
 use varikernel::image::write_colours;
 use winit::application::ApplicationHandler;
@@ -19,7 +20,7 @@ use winit::window::{Window, WindowId};
 use super::choices::Choices;
 use super::state::{Beside, State};
 use super::views::View;
-use super::{keys, middle, panels};
+use super::{keys, middle, panels, passes};
 
 /// Frames that egui takes to lay everything out after a change.
 const SETTLED: u32 = 3;
@@ -45,6 +46,8 @@ pub(super) struct App {
 /// Everything that lives as long as the window; fields are dropped in this order, so that the context goes last.
 struct Running {
     state: State,
+    /// What times the passes of a step.
+    passes: StageTimes,
     egui: egui_winit::State,
     painter: egui_glow::Painter,
     /// The canvas, as egui knows it; nothing before the first frame.
@@ -157,7 +160,8 @@ impl Running {
             .context("egui's shaders were refused")?;
         window.window().request_redraw();
         let title = String::new();
-        Ok(Self { state, egui, painter, canvas: None, wake: None, settled: 0, title, window })
+        let passes = StageTimes::new(window.gl())?;
+        Ok(Self { state, passes, egui, painter, canvas: None, wake: None, settled: 0, title, window })
     }
 
     /// One step of the picture, and the window drawn.
@@ -178,7 +182,9 @@ impl Running {
         let output = context.run_ui(input, |ui| spot = Some(lay_out(ui, state, canvas)));
         self.egui.handle_platform_output(self.window.window(), output.platform_output);
 
+        self.passes.begin_frame();
         let stepped = state.advance();
+        self.passes.end_frame();
         if let Some(spot) = spot {
             let maps = state.engine.maps();
             let sides = middle::sides(state, &maps).map(|side| (*side.maps, side.view));
@@ -228,7 +234,11 @@ impl Running {
         if stepped {
             // What OpenGL still has to do is done when the frame is shown: with a software renderer, by this thread.
             let whole = begun.elapsed();
-            let stages = state.engine.times();
+            let mut stages = state.engine.times();
+            // Of a GPU, those of a frame or a few before.
+            if let Some(frame) = self.passes.poll() {
+                stages.extend(passes::grouped(frame));
+            }
             let known = stages.iter().map(|&(_, time)| time).sum();
             state.times.add(&stages, ("drawing", whole.saturating_sub(known)));
             state.adapt(whole);

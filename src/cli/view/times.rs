@@ -9,13 +9,15 @@ use egui::{Align2, Color32, FontId, Rect, Sense, Stroke, Ui, pos2, vec2};
 const FRAMES: usize = 120;
 const HEIGHT: f32 = 70.0;
 /// Of the stages, in their order.
-const COLOURS: [Color32; 7] = [
+const COLOURS: [Color32; 9] = [
     Color32::from_rgb(0x4e, 0x9a, 0xe8),
     Color32::from_rgb(0xf2, 0xb1, 0x34),
     Color32::from_rgb(0x9b, 0x7e, 0xde),
     Color32::from_rgb(0x5f, 0xbf, 0x77),
     Color32::from_rgb(0xe8, 0x6a, 0x5e),
     Color32::from_rgb(0x4f, 0xc3, 0xc9),
+    Color32::from_rgb(0xd8, 0x7a, 0xb8),
+    Color32::from_rgb(0xa8, 0x8a, 0x68),
     Color32::from_rgb(0xc0, 0xc4, 0xcc),
 ];
 

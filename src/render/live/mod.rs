@@ -177,7 +177,6 @@ impl Live {
         let irradiance = pipeline.add(&shown.surfaces, points)?;
         self.shade.set_light(&shown.direct.image(), shown.through.image());
         self.shade.draw(&shown.surfaces, irradiance, scale)?;
-        lap("OpenGL commands");
         self.steps += 1;
         Ok(())
     }
@@ -206,7 +205,8 @@ impl Live {
         self.steps
     }
 
-    /// How long the parts of the last step took the processor, in their order; what OpenGL draws goes on after the last.
+    /// How long the parts of the last step took the processor, in their order; [`StageTimes`](crate::gl::StageTimes) tells of
+    /// the passes on OpenGL.
     #[must_use]
     pub fn times(&self) -> &[(&'static str, Duration)] {
         &self.times

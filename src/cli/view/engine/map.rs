@@ -1,7 +1,6 @@
 //! A map of counts from a file, and its radii.
 
 use std::path::Path;
-use std::time::{Duration, Instant};
 
 use anyhow::{Result, anyhow};
 use varikernel::context::window;
@@ -30,7 +29,6 @@ pub(in crate::cli::view) struct MapEngine {
     searched: bool,
     /// Read back for the readout.
     radii: Option<Image<u32>>,
-    times: Vec<(&'static str, Duration)>,
 }
 
 impl MapEngine {
@@ -49,7 +47,6 @@ impl MapEngine {
             counts,
             searched: false,
             radii: None,
-            times: Vec::new(),
         };
         // What would not be exact is refused before the old picture goes.
         engine.step()?;
@@ -73,11 +70,7 @@ impl MapEngine {
     }
 
     pub(super) fn step(&mut self) -> Result<()> {
-        let begun = Instant::now();
-        self.pipeline.build(&self.density).map_err(explain)?;
-        let built = Instant::now();
-        self.pipeline.search(&self.density).map_err(explain)?;
-        self.times = vec![("table", built - begun), ("search", built.elapsed())];
+        self.pipeline.render(&self.density).map_err(explain)?;
         (self.searched, self.radii) = (true, None);
         Ok(())
     }
@@ -111,10 +104,6 @@ impl MapEngine {
             most_photons: round_up(self.most_photons as f32),
             max_radius: self.settings().search.max_radius,
         }
-    }
-
-    pub(super) fn times(&self) -> Vec<(&'static str, Duration)> {
-        self.times.clone()
     }
 
     pub(super) fn inspect(&mut self, pixel: UVec2) -> Result<Readout> {
