@@ -1,7 +1,5 @@
 //! The guide's figures are what the library says.
 
-#![expect(clippy::unwrap_used, reason = "a test that cannot go on fails")]
-
 use std::collections::BTreeSet;
 
 use varikernel::glam::UVec2;
