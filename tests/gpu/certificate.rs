@@ -398,10 +398,7 @@ fn what_cannot_be_certified_is_refused() {
         let query = gl.glow().create_query().unwrap();
         gl.glow().begin_query(glow::SAMPLES_PASSED, query);
         let refused = usual.certify(&map);
-        assert!(
-            matches!(&refused, Err(Error::QueryRunning { kind: "GL_SAMPLES_PASSED" })),
-            "{refused:?}"
-        );
+        assert!(matches!(&refused, Err(Error::QueryRunning { kind: "GL_SAMPLES_PASSED" })), "{refused:?}");
         gl.glow().end_query(glow::SAMPLES_PASSED);
         assert_eq!(gl.glow().get_error(), glow::NO_ERROR);
     }
