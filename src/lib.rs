@@ -48,9 +48,12 @@
 //! | `cli`, `main` | the program, built on the public library: one file a verb |
 //! | `capi` | the C interface of `include/varikernel.h`: handles, plain structs, status codes |
 //! | [`measure`] | how right and how fast a result is: differences, errors of pictures, timing runs (`bench`), rivals on the processor (`rivals`), the thesis's tables and claims (`thesis`), both together (`reproduce`), a page of them (`report`), run time against error (`study`), promises about numbers put to the test (`stress`) |
-//! | `render` | scene in, picture out: the stages of a picture in order, soft shadows, what is seen in mirrors and through glass |
-//! | `bounce_map`, `gbuffer`, `shadow_map`, `density`, `splat`, `shade` | a stage of a picture each: what photons meet first, what pixels show, direct light, photons counted, kernels drawn, light added up |
+//! | `render` | scene in, picture out: the stages of a picture in order, soft shadows, what is seen in mirrors and through glass; `render::Live`, a picture that gets better step by step |
+//! | `bounce_map`, `gbuffer`, `shadow_map`, `shade` | a stage of a scene's picture each: what photons meet first, what pixels show, direct light, light added up |
 //! | `cube_map` | what is nearest around a place, rasterised |
+//! | [`irradiance`] | [`IrradiancePipeline`]: photons and a g-buffer in, irradiance out |
+//! | `density`, `splat` | its stages beside the radii: photons counted, kernels drawn |
+//! | `position` | a host's depth buffer to the places that its pixels show |
 //! | `adaptive` | [`AdaptivePipeline`]: plans each frame by the photons of the ones before |
 //! | [`planner`] | which table, build and search suit a map |
 //! | [`pipeline`] | the stages in order; what a host calls |
@@ -63,8 +66,8 @@
 //! | [`exactness`] | which sums fit which storage, decided before computing |
 //! | [`reference`](mod@reference) | the definition: the same in plain Rust, without OpenGL |
 //! | `photon` | scene in, photons out: traced on the CPU, landing after landing, with statistics |
-//! | `view` | a camera and its pixels: where a place is seen, along which ray a pixel looks |
 //! | `scene` | scene files: camera, lights, materials, triangles and spheres; ray casting |
+//! | `photon_point`, [`view`] | a photon as a vertex; a camera and its pixels: where a place is seen, along which ray a pixel looks |
 //! | `synth` | seeded test maps |
 //! | `context` | contexts: EGL devices and OSMesa without a window, and a window's |
 //! | [`gl`] | programs, textures, passes, timers, saved state; with `context` and `capi` the only unsafe code |

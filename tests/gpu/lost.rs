@@ -6,15 +6,18 @@ use std::any::Any;
 use std::ffi::c_void;
 use std::process::Command;
 
+use glam::UVec2;
 use varikernel::gl::{StageTimes, Timer};
-use varikernel::settings::{Method, Order, Settings};
+use varikernel::settings::{IrradianceSettings, Kernel, Method, Order, Settings};
 use varikernel::{
-    AdaptivePipeline, CountBounds, DensityMap, Error, Frame, Gl, Image, Mask, MaskMaker, RadiusMap,
-    RadiusPipeline,
+    AdaptivePipeline, ChosenRadius, CountBounds, DensityMap, DensityStage, Error, Frame, GatherStage, Gl,
+    HostDepth, HostSurfaces, Image, IrradiancePipeline, Mask, MaskMaker, PositionMaker, RadiusMap,
+    RadiusPipeline, SplatStage, SurfaceMaps,
 };
 
 use crate::calls::{Calls, counted};
 use crate::driver::{self, LATER_ERROR, PENDING_ERROR, live};
+use crate::host_picture::HostPicture;
 use crate::support::{egl, random_map};
 
 /// What a host may hold.
@@ -28,6 +31,67 @@ struct Objects {
     borrowed: RadiusMap,
     timer: Timer,
     times: StageTimes,
+    light: Light,
+}
+
+/// What a host with a g-buffer may hold.
+struct Light {
+    host: HostPicture,
+    pipeline: IrradiancePipeline,
+    density: DensityStage,
+    splat: SplatStage,
+    gather: GatherStage,
+}
+
+impl Light {
+    fn new(gl: &Gl, size: UVec2) -> Self {
+        let host = HostPicture::new(gl, size);
+        let mut pipeline = IrradiancePipeline::new(gl, size, IrradianceSettings::default()).unwrap();
+        pipeline.render(&host.surfaces, &host.photons).unwrap();
+        Self {
+            pipeline,
+            density: DensityStage::new(gl, size).unwrap(),
+            splat: SplatStage::new(gl, size, Kernel::Cone, true).unwrap(),
+            gather: GatherStage::new(gl, size, Kernel::Cone, true, false).unwrap(),
+            host,
+        }
+    }
+
+    fn call_all(&mut self, gl: &Gl, name: glow::Texture) -> Vec<(&'static str, Option<Error>)> {
+        fn failure<T>(result: varikernel::Result<T>) -> Option<Error> {
+            result.err()
+        }
+        let Self { host, pipeline, density, splat, gather } = self;
+        let HostPicture { positions, surfaces, photons, view } = host;
+        let size = view.size();
+        let (fixed, usual) = (ChosenRadius::Fixed(2), IrradianceSettings::default());
+        let depth = HostDepth { texture: name, reversed: false, zero_to_one: false };
+        let borrowed = HostSurfaces { position: name, normal: name };
+        let new_photons = HostPicture::photons(9);
+        pipeline.clear();
+        splat.clear();
+        vec![
+            ("IrradiancePipeline::new", failure(IrradiancePipeline::new(gl, size, usual))),
+            ("IrradiancePipeline::render", failure(pipeline.render(surfaces, photons))),
+            ("IrradiancePipeline::add", failure(pipeline.add(surfaces, photons))),
+            ("IrradiancePipeline::resize", failure(pipeline.resize(2 * size))),
+            ("IrradiancePipeline::resize, same", failure(pipeline.resize(size))),
+            ("IrradianceMap::read", failure(pipeline.irradiance().read())),
+            ("DensityStage::new", failure(DensityStage::new(gl, size))),
+            ("DensityStage::add", failure(density.add(surfaces, photons))),
+            ("DensityStage::read_counts", failure(density.read_counts())),
+            ("SplatStage::new", failure(SplatStage::new(gl, size, Kernel::Box, true))),
+            ("SplatStage::add", failure(splat.add(surfaces, photons, fixed))),
+            ("GatherStage::new", failure(GatherStage::new(gl, size, Kernel::Box, true, true))),
+            ("GatherStage::gather", failure(gather.gather(surfaces, density, fixed))),
+            ("PositionMaker::borrow", failure(PositionMaker::borrow(gl, depth))),
+            ("PositionMaker::render", failure(positions.render(view))),
+            ("SurfaceMaps::borrow", failure(SurfaceMaps::borrow(gl, *view, borrowed))),
+            ("SurfaceMaps::read_position", failure(surfaces.read_position())),
+            ("PhotonPoints::upload", failure(photons.upload(&new_photons))),
+            ("PhotonPoints::replace", failure(photons.replace(&new_photons))),
+        ]
+    }
 }
 
 impl Objects {
@@ -50,6 +114,7 @@ impl Objects {
             maker: MaskMaker::new(gl, size).unwrap(),
             borrowed: RadiusMap::borrow(gl, radii, None).unwrap(),
             timer: Timer::new(gl).unwrap(),
+            light: Light::new(gl, size),
             counts,
             map,
             pipeline,
@@ -65,10 +130,10 @@ impl Objects {
         }
         let (size, format) = (self.counts.size(), self.map.format());
         let name = self.map_name();
-        let Self { counts, map, mask, maker, pipeline, adaptive, borrowed, timer, times } = self;
+        let Self { counts, map, mask, maker, pipeline, adaptive, borrowed, timer, times, light } = self;
         let frame = Frame::new(map);
         times.begin_frame();
-        let answers = vec![
+        let mut answers = vec![
             ("RadiusPipeline::render", failure(pipeline.render(map))),
             ("RadiusPipeline::build", failure(pipeline.build(map))),
             ("RadiusPipeline::search", failure(pipeline.search(map))),
@@ -104,6 +169,7 @@ impl Objects {
             ("StageTimes::new", failure(StageTimes::new(gl))),
             ("DensityMap::replace", failure(map.replace(counts, CountBounds::UNKNOWN))),
         ];
+        answers.extend(light.call_all(gl, name));
         times.end_frame();
         drop(times.poll());
         assert_eq!(mask.size(), size);
@@ -115,8 +181,17 @@ impl Objects {
     }
 
     fn into_boxes(self) -> Vec<Box<dyn Any>> {
-        let Self { map, mask, maker, pipeline, adaptive, borrowed, timer, times, .. } = self;
+        let Self { map, mask, maker, pipeline, adaptive, borrowed, timer, times, light, .. } = self;
+        let Light { host, pipeline: of_light, density, splat, gather } = light;
+        let HostPicture { positions, surfaces, photons, .. } = host;
         vec![
+            Box::new(of_light),
+            Box::new(surfaces),
+            Box::new(positions),
+            Box::new(photons),
+            Box::new(density),
+            Box::new(splat),
+            Box::new(gather),
             Box::new(map),
             Box::new(mask),
             Box::new(maker),
@@ -213,7 +288,7 @@ fn out_of_memory_says_how_much_was_asked_for_and_what_to_do() {
     let counts = random_map(12, 19, 3);
     let map = DensityMap::upload(&gl, &counts, CountBounds::UNKNOWN).unwrap();
     let before = live();
-    let size = glam::UVec2::new(100, 50);
+    let size = UVec2::new(100, 50);
     // Shaders fail before the one texture does.
     let mut failures = (0..9).map(|call| {
         driver::FAIL_AT.set(Some(call));
