@@ -105,6 +105,10 @@ pub(crate) struct Args {
     #[arg(long, value_enum, value_name = "VIEW")]
     beside: Option<View>,
 
+    /// Where the line between the two is, as a share of the picture's width.
+    #[arg(long, default_value_t = 0.5, value_parser = parse_share, value_name = "SHARE")]
+    split: f32,
+
     /// A picture of the same size that errors are taken against: EXR or PNG.
     #[arg(long, value_name = "FILE")]
     reference: Option<PathBuf>,
@@ -140,6 +144,7 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
         window: args.window.to_array(),
         view: args.view,
         beside: args.beside.map_or(Beside::Nothing, Beside::View),
+        split: args.split,
         reference: args.reference.clone(),
         frames: args.frames,
         screenshot: args.screenshot.clone(),
@@ -148,6 +153,13 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     event_loop.run_app(&mut app).context("the window's events stopped coming")?;
     app.result()?;
     Ok(Outcome::Done)
+}
+
+fn parse_share(text: &str) -> Result<f32> {
+    match text.parse() {
+        Ok(share) if (0.0..=1.0).contains(&share) => Ok(share),
+        _ => bail!("give a number from 0 to 1"),
+    }
 }
 
 fn is_settings(path: &Path) -> bool {

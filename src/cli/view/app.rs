@@ -31,6 +31,7 @@ pub(super) struct Wishes {
     pub(super) window: [u32; 2],
     pub(super) view: Option<View>,
     pub(super) beside: Beside,
+    pub(super) split: f32,
     pub(super) reference: Option<PathBuf>,
     pub(super) frames: Option<u32>,
     pub(super) screenshot: Option<PathBuf>,
@@ -144,7 +145,7 @@ impl Running {
             state.message = None;
         }
         state.view = wishes.view.filter(|&view| state.has(view)).unwrap_or(state.view);
-        state.beside = wishes.beside;
+        (state.beside, state.split) = (wishes.beside, wishes.split);
 
         let context = egui::Context::default();
         context.set_theme(egui::Theme::Dark);

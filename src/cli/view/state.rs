@@ -22,7 +22,7 @@ use super::views::View;
 /// Frames whose median says how long a frame takes.
 const RECENT: usize = 5;
 /// Below this, the photons of a frame take hardly any time beside everything else that it does.
-const LEAST_ADAPTED: u32 = 4000;
+const LEAST_ADAPTED: u32 = 2000;
 
 /// What is shown on the right side of the line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
