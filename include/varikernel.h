@@ -563,8 +563,7 @@ enum varikernel_status varikernel_irradiance_frame_default(struct varikernel_irr
 /**
  * Allocates and compiles for surfaces of `width` x `height` pixels. Takes milliseconds to seconds; frames only draw.
  *
- * `*irradiance` is the host's to destroy, before or after `context`. `settings` may be null for the defaults. For another
- * size, destroy it and make another.
+ * `*irradiance` is the host's to destroy, before or after `context`. `settings` may be null for the defaults.
  *
  * Fails with SETTING, TOO_LARGE, SHADER, OUT_OF_MEMORY, OPEN_GL, INVALID_ARGUMENT, WRONG_THREAD, NO_CONTEXT.
  */
@@ -592,6 +591,27 @@ enum varikernel_status varikernel_irradiance_render(struct varikernel_irradiance
                                                     const struct varikernel_irradiance_frame *frame,
                                                     uint32_t *irradiance_texture,
                                                     uint32_t *radius_texture);
+
+/**
+ * Tells the memory that irradiance takes, before the handle is made: bytes of textures and buffers, as large as their formats
+ * say; surfaces, the positions of a depth buffer (16 bytes a pixel) and photons apart. `settings` may be null for the defaults.
+ *
+ * Fails with SETTING, INVALID_ARGUMENT.
+ */
+enum varikernel_status varikernel_irradiance_memory_required(uint32_t width,
+                                                             uint32_t height,
+                                                             const struct varikernel_irradiance_settings *settings,
+                                                             uint64_t *bytes);
+
+/**
+ * From now on for surfaces of another size, without photons. As varikernel_pipeline_resize.
+ *
+ * Fails with SETTING, TOO_LARGE, OUT_OF_MEMORY, CONTEXT_LOST, OPEN_GL, INVALID_ARGUMENT, WRONG_THREAD, NO_CONTEXT, and the
+ * handle then goes on at its old size.
+ */
+enum varikernel_status varikernel_irradiance_resize(struct varikernel_irradiance *irradiance,
+                                                    uint32_t width,
+                                                    uint32_t height);
 
 /**
  * Frees the handle with its textures; null is fine. As varikernel_pipeline_destroy.
