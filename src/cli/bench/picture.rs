@@ -88,7 +88,7 @@ fn print(report: &PictureReport) -> Result<()> {
     output::print(&table.trim_fmt())?;
     output::print(
         "\nms: median time. copies: ms over that of a full-screen pass that copies one texel.\n\
-         point passes: ms over that of the photons drawn as points.\n\
+         points: ms over that of the photons drawn as points.\n\
          fragments: for each contributing photon, and their time.",
     )
 }
