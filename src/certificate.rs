@@ -120,7 +120,7 @@ impl Certifier {
         let unproved_radii = unproved.count(|| pass.fill(target))?;
         let pass = Pass::new(ENTRIES, entries)
             .read("table", table)
-            .read("density", density.texture())
+            .read("density", density.as_texture())
             .set("count_limit", plan.count_limit);
         let wrong_entries = unproved.count(|| pass.fill(target))?;
         Ok(Certificate { unproved_radii, wrong_entries })

@@ -87,9 +87,9 @@ impl DensityMap {
         self.texture.size()
     }
 
-    /// The name of the texture.
+    /// The texture of counts.
     #[must_use]
-    pub fn name(&self) -> glow::Texture {
+    pub fn texture(&self) -> glow::Texture {
         self.texture.name()
     }
 
@@ -105,7 +105,7 @@ impl DensityMap {
         self.bounds
     }
 
-    pub(crate) fn texture(&self) -> &Texture {
+    pub(crate) fn as_texture(&self) -> &Texture {
         &self.texture
     }
 }

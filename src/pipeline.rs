@@ -156,7 +156,7 @@ impl RadiusPipeline {
     fn build_frame(&mut self, frame: &Frame<'_>) -> Result<()> {
         self.check(frame)?;
         let density = frame.density;
-        let map = density.texture().name();
+        let map = density.texture();
         let before = self.built.filter(|built| !built.is_empty());
         let bounds = self.bounds_with(frame);
         let plan = exactness::plan(&self.settings, self.size, bounds)?;
@@ -312,12 +312,10 @@ impl RadiusPipeline {
 
     fn check_built(&self, frame: &Frame<'_>) -> Result<Built> {
         self.check(frame)?;
-        self.built.filter(|built| built.map == frame.density.texture().name()).ok_or_else(|| {
-            Error::Mismatch {
-                what: "density map of the search",
-                expected: "the one that was built last".to_owned(),
-                got: "another, or none was built".to_owned(),
-            }
+        self.built.filter(|built| built.map == frame.density.texture()).ok_or_else(|| Error::Mismatch {
+            what: "density map of the search",
+            expected: "the one that was built last".to_owned(),
+            got: "another, or none was built".to_owned(),
         })
     }
 
@@ -345,7 +343,7 @@ impl RadiusPipeline {
             let size = |size: UVec2| format!("{} x {}", size.x, size.y);
             return mismatch("mask", size(self.size), size(mask.size()));
         }
-        let inputs = [Some(frame.density.texture()), frame.mask.map(Mask::texture)];
+        let inputs = [Some(frame.density.as_texture()), frame.mask.map(Mask::texture)];
         if inputs.into_iter().flatten().any(|input| self.search.radii().is_written_to(input.name())) {
             return mismatch(
                 "density map or mask",

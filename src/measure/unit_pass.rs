@@ -94,7 +94,7 @@ impl UnitPass {
             });
         }
         let _state = StateGuard::new(&self.gl);
-        let mut pass = Pass::new(self.unit.label(), &self.program).read("density", density.texture());
+        let mut pass = Pass::new(self.unit.label(), &self.program).read("density", density.as_texture());
         if self.unit == Unit::Probe {
             pass = pass.set("map_size", density.size().as_ivec2());
         }

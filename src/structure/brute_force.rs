@@ -25,7 +25,7 @@ impl BruteForce {
     }
 
     pub(super) fn read_by<'a>(&self, pass: Pass<'a>, density: &'a DensityMap) -> Pass<'a> {
-        pass.read("density", density.texture()).set("count_limit", self.count_limit)
+        pass.read("density", density.as_texture()).set("count_limit", self.count_limit)
     }
 }
 

@@ -76,7 +76,7 @@ impl Mipmap {
 
     pub(super) fn build(&mut self, density: &DensityMap, plan: Plan) -> Result<()> {
         Pass::new(SEED, &self.seed)
-            .read("density", density.texture())
+            .read("density", density.as_texture())
             .set("count_limit", plan.count_limit)
             .set("map_size", density.size().as_ivec2())
             .fill(&mut self.chain)?;

@@ -133,6 +133,11 @@ fn every_shader_passes_glslang_validator_and_enables_no_extension() {
             files.push(file);
         }
     }
+    // What the window shows them with, which is the program's own.
+    let shown = folder.path().join("show.frag");
+    let text = include_str!("../../glsl/view/show.frag");
+    std::fs::write(&shown, format!("#version 330 core\n{text}")).unwrap();
+    files.push(shown);
     let validate = |files: &[std::path::PathBuf]| {
         Command::new("glslangValidator")
             .args(files)

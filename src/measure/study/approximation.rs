@@ -92,7 +92,7 @@ impl Approximation {
         let (places, spacing, first_place, factor, summand) = match &mut self.first {
             First::HalfDensity { program, half, density: coarse, pipeline } => {
                 Pass::new(HALF_DENSITY, program)
-                    .read("finer", density.texture())
+                    .read("finer", density.as_texture())
                     .set("finer_size", density.size().as_ivec2())
                     .fill(half)?;
                 // Its middle lies between two pixels.

@@ -235,7 +235,7 @@ impl Live {
     /// Photons of each pixel, GL_R32F.
     #[must_use]
     pub fn density(&self) -> glow::Texture {
-        self.pipeline.density().name()
+        self.pipeline.density().texture()
     }
 
     /// The radii of the last step's kernels in pixels, GL_R32UI, if they are variable.

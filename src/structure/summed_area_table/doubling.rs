@@ -55,7 +55,7 @@ impl Doubling {
     ) -> Result<()> {
         let size = density.size();
         let seed = Pass::new(SEED, &self.seed)
-            .read("density", density.texture())
+            .read("density", density.as_texture())
             .set("count_limit", plan.count_limit)
             .set("map_size", size.as_ivec2());
         match mean {

@@ -134,7 +134,7 @@ pub(super) fn shapes(size: UVec2) -> Vec<TargetShape> {
 
 /// Adds what a pass over the map's counts needs.
 fn of_map<'a>(pass: Pass<'a>, density: &'a DensityMap, plan: Plan) -> Pass<'a> {
-    pass.read("density", density.texture())
+    pass.read("density", density.as_texture())
         .set("map_size", density.size().as_ivec2())
         .set("count_limit", plan.count_limit)
 }

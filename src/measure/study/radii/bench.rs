@@ -42,7 +42,7 @@ impl Bench {
         Ok(Self {
             map: map.info.clone(),
             photons: total_photons(&counts),
-            claimed: DensityMap::borrow(gl, density.texture().name(), CountBounds::total_at_most(1))?,
+            claimed: DensityMap::borrow(gl, density.texture(), CountBounds::total_at_most(1))?,
             density,
             exact,
             mean_radius,
