@@ -84,14 +84,15 @@ impl DensityStage {
     /// [`Error::Gl`] if the driver fails.
     pub fn add(&mut self, surfaces: &SurfaceMaps, photons: &PhotonPoints) -> Result<&DensityMap> {
         surfaces.check_size(self.map.size())?;
+        let drawn = self.drawn() + photons.count();
+        // First, so that the bounds hold also where drawing fails half-way.
+        self.map.set_bounds(CountBounds::total_at_most(drawn));
         let state = StateGuard::new(&self.gl);
         for chunk in photons.chunks() {
             surfaces.read_by(Pass::new(LABEL, &self.program)).add_points(chunk, &mut self.target)?;
         }
         self.gl.check("drawing photons")?;
         drop(state);
-        let drawn = self.drawn() + photons.count();
-        self.map.set_bounds(CountBounds::total_at_most(drawn));
         let (drawn_then, fullest_then) = self.read;
         if drawn - drawn_then + fullest_then >= MOST {
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a count up to 2^24")]

@@ -145,6 +145,12 @@ pub enum Error {
 }
 
 impl Error {
+    /// What has one size, where another is needed.
+    pub(crate) fn size(what: &'static str, expected: UVec2, got: UVec2) -> Self {
+        let in_words = |size: UVec2| format!("{} x {}", size.x, size.y);
+        Self::Mismatch { what, expected: in_words(expected), got: in_words(got) }
+    }
+
     /// A file error; see [`Error::File`].
     #[cfg(feature = "files")]
     pub(crate) fn file(

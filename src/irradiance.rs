@@ -2,8 +2,9 @@
 //!
 //! Photons may come all at once, or part after part, each with the power of all lights: the sum of k parts is then k times
 //! the light. Each part is drawn with the radii of all photons so far, so that these shrink as photons come, and the mean
-//! of the parts gets sharper. Of k parts, the last is drawn with kernels of n / k of its photons; the mean has about half the
-//! variance that one splat of all photons with n each has, since early parts were drawn with wider kernels.
+//! of the parts gets sharper. By arithmetic, on even ground: a kernel of part i holds n / i of its photons, so that the part's
+//! variance is i / n of its square, and that of the mean of k parts 1 / (2 n), whatever k; one splat of all photons has 1 / n, with
+//! kernels as narrow as the last.
 
 use glam::UVec2;
 

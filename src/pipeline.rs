@@ -265,11 +265,7 @@ impl RadiusPipeline {
     pub fn certify_radii(&mut self, density: &DensityMap, radii: &RadiusMap) -> Result<Certificate> {
         let plan = self.prepare_certificate(density)?;
         if radii.size() != self.size {
-            return Err(Error::Mismatch {
-                what: "radius map",
-                expected: self.size.to_string(),
-                got: radii.size().to_string(),
-            });
+            return Err(Error::size("radius map", self.size, radii.size()));
         }
         let _state = StateGuard::new(&self.gl);
         self.certifier.certify(density, plan, &self.structure, radii)
@@ -340,8 +336,7 @@ impl RadiusPipeline {
             return mismatch("mask", in_words(self.settings.masked), in_words(frame.mask.is_some()));
         }
         if let Some(mask) = frame.mask.filter(|mask| mask.size() != self.size) {
-            let size = |size: UVec2| format!("{} x {}", size.x, size.y);
-            return mismatch("mask", size(self.size), size(mask.size()));
+            return Err(Error::size("mask", self.size, mask.size()));
         }
         let inputs = [Some(frame.density.as_texture()), frame.mask.map(Mask::texture)];
         if inputs.into_iter().flatten().any(|input| self.search.radii().is_written_to(input.name())) {

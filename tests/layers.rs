@@ -75,6 +75,7 @@ const ARROWS: &[(&str, &[&str])] = &[
             "maps",
             "photon",
             "pipeline",
+            "reference",
             "scene",
             "shade",
             "shadow_map",

@@ -77,10 +77,16 @@ impl Vertices {
         if u64::from(size.cast_unsigned()) < needed {
             return Err(mismatch(format!("{} bytes", size.cast_unsigned())));
         }
+        let Ok(offset) = i32::try_from(bytes * u64::from(first)) else {
+            return Err(Error::Mismatch {
+                what: "host's vertex buffer",
+                expected: "vertices in the first 2^31 bytes".to_owned(),
+                got: format!("vertex {first}, {bytes} bytes each"),
+            });
+        };
         let mut owned = Self::over(gl, Buffer::Hosts);
         owned.count = signed(count);
-        let offset = bytes * u64::from(first);
-        owned.describe(buffer, i32::try_from(offset).expect("within a buffer of 2^31 bytes"), components)?;
+        owned.describe(buffer, offset, components)?;
         Ok(owned)
     }
 

@@ -64,7 +64,11 @@ impl PhotonPoints {
     pub fn replace(&mut self, photons: &[PhotonPoint]) -> Result<()> {
         self.check_ours()?;
         self.spare.append(&mut self.chunks);
-        self.upload(photons)
+        let uploaded = self.upload(photons);
+        if uploaded.is_err() {
+            self.spare.append(&mut self.chunks);
+        }
+        uploaded
     }
 
     /// How many there are.

@@ -139,8 +139,7 @@ impl SurfaceMaps {
         if self.size() == size {
             return Ok(());
         }
-        let in_words = |size: UVec2| format!("{} x {}", size.x, size.y);
-        Err(Error::Mismatch { what: "surfaces", expected: in_words(size), got: in_words(self.size()) })
+        Err(Error::size("surfaces", size, self.size()))
     }
 
     /// What `common/surfaces.glsl` reads and sets, but for the camera's place, which not every shader uses.

@@ -166,13 +166,15 @@ fn table() -> TextureShape {
 /// Checks what kernels are drawn with.
 fn check(surfaces: &SurfaceMaps, size: UVec2, radius: ChosenRadius<'_>, fixed: bool) -> Result<()> {
     surfaces.check_size(size)?;
-    let in_words = |fixed: bool| if fixed { "a fixed one" } else { "a radius map" }.to_owned();
-    let (expected, got) = match radius {
-        _ if radius.is_fixed() != fixed => (in_words(fixed), in_words(!fixed)),
-        ChosenRadius::Map(map) if map.size() != size => (size.to_string(), map.size().to_string()),
-        _ => return Ok(()),
-    };
-    Err(Error::Mismatch { what: "radius of the kernels", expected, got })
+    let what = "radius of the kernels";
+    match radius {
+        _ if radius.is_fixed() != fixed => {
+            let in_words = |fixed: bool| if fixed { "a fixed one" } else { "a radius map" }.to_owned();
+            Err(Error::Mismatch { what, expected: in_words(fixed), got: in_words(!fixed) })
+        }
+        ChosenRadius::Map(map) if map.size() != size => Err(Error::size(what, size, map.size())),
+        _ => Ok(()),
+    }
 }
 
 /// Gives a pass what `common/chosen_radius.glsl` reads.

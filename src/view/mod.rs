@@ -118,8 +118,7 @@ impl View {
         if self.size == size {
             return Ok(());
         }
-        let in_words = |size: UVec2| format!("{} x {}", size.x, size.y);
-        Err(Error::Mismatch { what: "view", expected: in_words(size), got: in_words(self.size) })
+        Err(Error::size("view", size, self.size))
     }
 
     /// The pinhole, in scene units.

@@ -9,7 +9,6 @@ use anyhow::Result;
 use varikernel::Gl;
 use varikernel::glam::UVec2;
 use varikernel::image::ToneMap;
-use varikernel::view::Camera;
 
 use super::camera::Orbit;
 use super::choices::{CameraChoice, Choices};
@@ -169,14 +168,7 @@ impl State {
         if self.choices == self.accepted {
             return;
         }
-        let camera = camera.or_else(|| self.engine.camera().map(|(camera, _)| camera));
-        let nowhere = Camera {
-            position: [0.0; 3].into(),
-            direction: [0.0, 0.0, 1.0].into(),
-            up: [0.0, 1.0, 0.0].into(),
-            vertical_fov_degrees: 45.0,
-        };
-        match self.engine.change(&self.choices, camera.unwrap_or(nowhere)) {
+        match self.engine.change(&self.choices, camera) {
             Ok(()) => self.accepted = self.choices.clone(),
             Err(error) => {
                 self.choices = self.accepted.clone();

@@ -1,5 +1,6 @@
 //! A shader of the program's own, drawn over a texture that the window shows.
 
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use glam::{IVec2, UVec2, Vec2};
@@ -40,6 +41,8 @@ pub struct Input {
 pub struct Canvas {
     gl: Gl,
     program: glow::Program,
+    /// Of the uniforms that the compiler kept.
+    locations: BTreeMap<String, glow::UniformLocation>,
     vertex_array: glow::VertexArray,
     framebuffer: glow::Framebuffer,
     smooth: glow::Sampler,
@@ -61,6 +64,7 @@ impl Canvas {
             let canvas = Self {
                 gl: gl.clone(),
                 program,
+                locations: locations(glow, program),
                 vertex_array: glow.create_vertex_array().map_err(made)?,
                 framebuffer: glow.create_framebuffer().map_err(made)?,
                 smooth: glow.create_sampler().map_err(made)?,
@@ -115,11 +119,11 @@ impl Canvas {
                 glow.active_texture(glow::TEXTURE0 + unit);
                 glow.bind_texture(glow::TEXTURE_2D, input.texture);
                 glow.bind_sampler(unit, input.smooth.then_some(self.smooth));
-                glow.uniform_1_i32(self.location(input.name).as_ref(), unit.cast_signed());
+                glow.uniform_1_i32(self.locations.get(input.name), unit.cast_signed());
             }
             for &(name, value) in uniforms {
-                let location = self.location(name);
-                let location = location.as_ref();
+                // None for a name that the compiler found to be unused.
+                let location = self.locations.get(name);
                 match value {
                     Uniform::Int(value) => glow.uniform_1_i32(location, value),
                     Uniform::Float(value) => glow.uniform_1_f32(location, value),
@@ -158,12 +162,6 @@ impl Canvas {
             glow.framebuffer_texture_2d(glow::FRAMEBUFFER, glow::COLOR_ATTACHMENT0, plane, texture, 0);
         }
     }
-
-    /// Nothing for a name that the compiler found to be unused.
-    fn location(&self, name: &str) -> Option<glow::UniformLocation> {
-        // SAFETY: the context is current while the handle lives, and the program is linked.
-        unsafe { self.gl.glow().get_uniform_location(self.program, name) }
-    }
 }
 
 impl Drop for Canvas {
@@ -177,6 +175,20 @@ impl Drop for Canvas {
             glow.delete_sampler(self.smooth);
             glow.delete_texture(self.texture);
         }
+    }
+}
+
+/// The uniforms of a linked program.
+unsafe fn locations(glow: &glow::Context, program: glow::Program) -> BTreeMap<String, glow::UniformLocation> {
+    // SAFETY: the caller vouches that the context is current and the program linked.
+    unsafe {
+        let active = (0..glow.get_active_uniforms(program))
+            .filter_map(|index| glow.get_active_uniform(program, index));
+        active
+            .filter_map(|uniform| {
+                Some((uniform.name.clone(), glow.get_uniform_location(program, &uniform.name)?))
+            })
+            .collect()
     }
 }
 

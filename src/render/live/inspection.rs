@@ -5,6 +5,7 @@ use glam::UVec2;
 use crate::error::{Error, Result};
 use crate::image::Image;
 use crate::irradiance::IrradiancePipeline;
+use crate::reference::{Inside, Table};
 use crate::scene::Scene;
 use crate::settings::RadiusChoice;
 use crate::view::View;
@@ -27,7 +28,7 @@ pub struct Inspection {
 /// Maps as they were after a step.
 #[derive(Debug, Default)]
 pub(super) struct Inspector {
-    maps: Option<(Image<f32>, Option<Image<u32>>)>,
+    maps: Option<(Table, Option<Image<u32>>)>,
 }
 
 impl Inspector {
@@ -55,51 +56,24 @@ impl Inspector {
             maps
         } else {
             let radii = pipeline.radii().filter(|_| pipeline.density_stage().drawn() > 0);
-            (pipeline.density_stage().read_counts()?, radii.map(crate::RadiusMap::read).transpose()?)
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "counts up to 2^24")]
+            let counts = pipeline.density_stage().read_counts()?.map(|count| count as u32);
+            (Table::new(&counts), radii.map(crate::RadiusMap::read).transpose()?)
         };
-        let (counts, radii) = self.maps.insert(maps);
+        let (table, radii) = self.maps.insert(maps);
         let radius = match (pipeline.settings().radius, radii) {
             (RadiusChoice::Fixed(radius), _) => radius,
             (RadiusChoice::Variable, Some(radii)) => radii.at(pixel.x, pixel.y),
             (RadiusChoice::Variable, None) => pipeline.settings().search.search.max_radius,
         };
+        let within = |radius| table.count(Inside::of_box(size, pixel.x, pixel.y, radius));
         let hit = scene.cast(&view.ray(pixel.x, pixel.y));
         Ok(Inspection {
-            photons: within(counts, pixel, 0),
+            photons: within(0),
             radius,
-            within: within(counts, pixel, radius),
-            within_smaller: (radius > 1).then(|| within(counts, pixel, radius - 1)),
+            within: within(radius),
+            within_smaller: (radius > 1).then(|| within(radius - 1)),
             surface: hit.map(|hit| scene.geometry().surfaces[hit.surface as usize].clone()),
         })
-    }
-}
-
-/// Photons in the box of a radius, as far as it is inside of the map.
-fn within(counts: &Image<f32>, pixel: UVec2, radius: u32) -> u64 {
-    let first = pixel.saturating_sub(UVec2::splat(radius));
-    let end = (pixel + radius + 1).min(counts.size());
-    let of_row = |y| (first.x..end.x).map(move |x| f64::from(counts.at(x, y)));
-    let sum: f64 = (first.y..end.y).flat_map(of_row).sum();
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a sum of counts")]
-    let sum = sum as u64;
-    sum
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn boxes_are_cut_at_the_borders() {
-        // 0 1 2 / 3 4 5
-        let mut counts = Image::filled(UVec2::new(3, 2), 0.0);
-        for (value, (x, y)) in
-            [0.0, 1.0, 2.0, 3.0, 4.0, 5.0].into_iter().zip([(0, 0), (1, 0), (2, 0), (0, 1), (1, 1), (2, 1)])
-        {
-            counts.set(x, y, value);
-        }
-        assert_eq!(within(&counts, UVec2::new(1, 0), 0), 1);
-        assert_eq!(within(&counts, UVec2::new(0, 0), 1), 8);
-        assert_eq!(within(&counts, UVec2::new(2, 1), 5), 15);
     }
 }

@@ -7,6 +7,7 @@ use varikernel::context::window;
 use varikernel::glam::UVec2;
 use varikernel::image::{Attribute, Format, Picture, ReadOptions, read_counts, write_counts, write_picture};
 use varikernel::measure::total_photons;
+use varikernel::reference::{Inside, Table};
 use varikernel::settings::Settings;
 use varikernel::{CountBounds, DensityMap, Error, Gl, Image, RadiusPipeline};
 
@@ -18,6 +19,8 @@ pub(in crate::cli::view) struct MapEngine {
     gl: Gl,
     title: String,
     counts: Image<u32>,
+    /// Photons of any box.
+    table: Table,
     /// Photons in all, and of the pixel with the most.
     photons: u64,
     most_photons: u32,
@@ -44,6 +47,7 @@ impl MapEngine {
             photons: total_photons(&counts),
             most_photons: counts.values().iter().copied().max().unwrap_or(0),
             density,
+            table: Table::new(&counts),
             counts,
             searched: false,
             radii: None,
@@ -112,12 +116,13 @@ impl MapEngine {
             None => self.pipeline.radii().read()?,
         };
         let radius = self.radii.insert(radii).at(pixel.x, pixel.y);
+        let within = |radius| self.table.count(Inside::of_box(self.counts.size(), pixel.x, pixel.y, radius));
         Ok(Readout {
             pixel,
             photons: self.counts.at(pixel.x, pixel.y).into(),
             radius,
-            within: within(&self.counts, pixel, radius),
-            within_smaller: (radius > 1).then(|| within(&self.counts, pixel, radius - 1)),
+            within: within(radius),
+            within_smaller: (radius > 1).then(|| within(radius - 1)),
             surface: None,
         })
     }
@@ -138,14 +143,6 @@ impl MapEngine {
     }
 }
 
-/// Photons in the box of a radius, as far as it is inside of the map.
-fn within(counts: &Image<u32>, pixel: UVec2, radius: u32) -> u64 {
-    let first = pixel.saturating_sub(UVec2::splat(radius));
-    let end = (pixel + radius + 1).min(counts.size());
-    let of_row = |y| (first.x..end.x).map(move |x| u64::from(counts.at(x, y)));
-    (first.y..end.y).flat_map(of_row).sum()
-}
-
 /// An error of the library in the window's words.
 fn explain(error: Error) -> anyhow::Error {
     match error {
@@ -153,19 +150,5 @@ fn explain(error: Error) -> anyhow::Error {
             anyhow!("{} = {value} is not possible: {reason}", name.replace('_', " "))
         }
         other => other.into(),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn boxes_are_cut_at_the_borders() {
-        // 0 1 2 / 3 4 5
-        let counts = Image::from_values(UVec2::new(3, 2), vec![0, 1, 2, 3, 4, 5]);
-        assert_eq!(within(&counts, UVec2::new(1, 0), 0), 1);
-        assert_eq!(within(&counts, UVec2::new(0, 0), 1), 8);
-        assert_eq!(within(&counts, UVec2::new(2, 1), 5), 15);
     }
 }

@@ -51,11 +51,11 @@ impl Engine {
         Ok(Self::Scene(Box::new(SceneEngine::open(gl, path, choices)?)))
     }
 
-    /// Goes on with other choices; the source is as it was.
+    /// Goes on with other choices, seen from `camera` or as the scene has it; the source is as it was.
     ///
     /// # Errors
     /// If a choice is refused; all is as it was then.
-    pub(super) fn change(&mut self, choices: &Choices, camera: Camera) -> Result<()> {
+    pub(super) fn change(&mut self, choices: &Choices, camera: Option<Camera>) -> Result<()> {
         match self {
             Self::Scene(engine) => engine.change(choices, camera),
             Self::Map(engine) => engine.change(choices),

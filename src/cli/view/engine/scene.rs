@@ -29,7 +29,8 @@ impl SceneEngine {
         Ok(Self { live: Live::new(gl, scene, settings).map_err(in_words_of_options)? })
     }
 
-    pub(super) fn change(&mut self, choices: &Choices, camera: Camera) -> Result<()> {
+    pub(super) fn change(&mut self, choices: &Choices, camera: Option<Camera>) -> Result<()> {
+        let camera = camera.unwrap_or(self.live.scene().camera);
         let wanted = settings(self.live.settings(), choices, camera);
         if wanted == *self.live.settings() {
             return Ok(());
