@@ -18,7 +18,13 @@ use crate::{Error, Result};
 /// [`Error::File`] with line and field.
 pub(super) fn scene(text: &Text<'_>, files: &Files) -> Result<Scene> {
     let entry: SceneEntry = toml::from_str(text.content).map_err(|error| text.not_a_scene(&error))?;
-    let mut builder = Builder { text, files, materials: Vec::new(), geometry: Geometry::default() };
+    let mut builder = Builder {
+        text,
+        files,
+        materials: Vec::new(),
+        geometry: Geometry::default(),
+        mesh_lights: Vec::new(),
+    };
     let camera = builder.camera(&entry)?;
     let mut names = BTreeMap::new();
     for (name, material) in &entry.materials {
@@ -45,7 +51,8 @@ pub(super) fn scene(text: &Text<'_>, files: &Files) -> Result<Scene> {
         }
         lights.extend(builder.light(name, light)?);
     }
-    let Builder { materials, geometry, .. } = builder;
+    let Builder { materials, geometry, mesh_lights, .. } = builder;
+    lights.extend(mesh_lights);
     lights.extend(shining(&geometry, &materials));
     Ok(Scene::new(entry.title, entry.units, camera, lights, materials, geometry))
 }
@@ -75,6 +82,8 @@ struct Builder<'a> {
     files: &'a Files,
     materials: Vec<Material>,
     geometry: Geometry,
+    /// Lights that came with mesh files.
+    mesh_lights: Vec<Light>,
 }
 
 impl Builder<'_> {
@@ -115,7 +124,7 @@ impl Builder<'_> {
                 let (name, scattering) = (name.get_ref().clone(), Scattering::Lambert(Vec3::ZERO));
                 let (surface, material) = (index(self.geometry.surfaces.len()), index(self.materials.len()));
                 self.geometry.surfaces.push(name.clone());
-                self.materials.push(Material { name, scattering, emission });
+                self.materials.push(Material::plain(name, scattering, emission));
                 for half in halves {
                     self.geometry.push_flat(half, surface, material);
                 }
@@ -164,7 +173,7 @@ impl Builder<'_> {
                 return Err(self.text.error(&name.span(), &field, problem, remedy));
             }
         };
-        Ok(Material { name: name.get_ref().clone(), scattering, emission })
+        Ok(Material::plain(name.get_ref().clone(), scattering, emission))
     }
 
     fn surface(
@@ -244,6 +253,12 @@ impl Builder<'_> {
             for position in &mut part.positions {
                 *position = *position * scale + translate;
             }
+        }
+        for mut light in std::mem::take(&mut mesh.lights) {
+            if let LightShape::Point { position, .. } = &mut light.shape {
+                *position = *position * scale + translate;
+            }
+            self.mesh_lights.push(light);
         }
         let first = index(self.materials.len());
         let added = mesh::add(&mesh, &mut self.geometry, entry.smooth, surface, |part| {

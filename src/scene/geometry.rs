@@ -1,7 +1,7 @@
 //! Triangles and spheres, as they are rasterised and as rays see them.
 
 use bytemuck::{Pod, Zeroable};
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 /// A corner of triangles.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
@@ -11,6 +11,18 @@ pub struct Vertex {
     pub position: Vec3,
     /// Of length 1: that of the face, or of the smooth surface that the triangles stand for.
     pub normal: Vec3,
+    /// What reflectances are multiplied with there, linear RGB from 0 to 1; 1 without vertex colours.
+    pub colour: Vec3,
+    /// Where it lies in the material's reflectance texture, and in its emission texture.
+    pub coordinates: [Vec2; 2],
+}
+
+impl Vertex {
+    /// A corner without colour and texture coordinates.
+    #[must_use]
+    pub fn plain(position: Vec3, normal: Vec3) -> Self {
+        Self { position, normal, colour: Vec3::ONE, coordinates: [Vec2::ZERO; 2] }
+    }
 }
 
 /// Three corners, counter-clockwise as seen from the front.
@@ -64,7 +76,7 @@ impl Geometry {
         let [a, b, c] = corners.map(Vec3::as_dvec3);
         let normal = (b - a).cross(c - a).normalize().as_vec3();
         let first = u32::try_from(self.vertices.len()).expect("fewer than 2^32 vertices fit into memory");
-        self.vertices.extend(corners.map(|position| Vertex { position, normal }));
+        self.vertices.extend(corners.map(|position| Vertex::plain(position, normal)));
         self.triangles.push(Triangle {
             vertices: [first, first + 1, first + 2],
             surface,
@@ -121,7 +133,7 @@ impl Sphere {
                 #[expect(clippy::cast_precision_loss, reason = "at most 20000")]
                 let (sin, cos) = (std::f32::consts::TAU * step as f32 / around as f32).sin_cos();
                 let normal = Vec3::new(sin_polar * cos, cos_polar, sin_polar * sin);
-                vertices.push(Vertex { position: self.centre + self.radius * normal, normal });
+                vertices.push(Vertex::plain(self.centre + self.radius * normal, normal));
             }
         }
         let mut triangles = Vec::new();

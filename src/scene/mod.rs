@@ -16,6 +16,7 @@ mod material;
 mod mesh;
 mod shipped;
 mod source;
+mod texture;
 
 pub use cast::Hit;
 pub use geometry::{Geometry, Sphere, Triangle, Vertex};
@@ -25,6 +26,7 @@ pub use light::{Light, LightShape, area};
 #[cfg(feature = "render")]
 pub(crate) use light_place::LightPlace;
 pub use material::{Material, Scattering};
+pub use texture::{PlacedTexture, Texture, Wrap};
 
 pub use crate::view::{Camera, Ray};
 

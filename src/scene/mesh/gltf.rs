@@ -30,7 +30,8 @@ pub(super) fn read(content: &[u8], files: &Files, name: &str) -> Result<Mesh, Pr
     for node in scene.nodes() {
         add_node(&node, Mat4::IDENTITY, 0, &buffers, &mut parts)?;
     }
-    Ok(Mesh { parts, materials: gltf.materials().map(|found| material(&found)).collect::<Result<_, _>>()? })
+    let materials = gltf.materials().map(|found| material(&found)).collect::<Result<_, _>>()?;
+    Ok(Mesh { parts, materials, ..Mesh::default() })
 }
 
 fn bytes(
@@ -131,6 +132,7 @@ fn part(primitive: &::gltf::Primitive<'_>, to_world: Mat4, buffers: &[Vec<u8>]) 
         normals: normals.iter().map(|&normal| turn * Vec3::from(normal)).collect(),
         triangles,
         material: primitive.material().index().and_then(|index| u32::try_from(index).ok()),
+        ..Part::default()
     })
 }
 
@@ -166,5 +168,5 @@ fn material(found: &::gltf::Material<'_>) -> Result<Material, Problem> {
         Scattering::Lambert(colour)
     };
     let emission = Vec3::from(found.emissive_factor()) * found.emissive_strength().unwrap_or(1.0);
-    super::checked(Material { name, scattering, emission })
+    super::checked(Material::plain(name, scattering, emission))
 }

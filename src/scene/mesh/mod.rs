@@ -3,26 +3,36 @@
 mod gltf;
 mod obj;
 
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 
 use super::fields::{MAX_COORDINATE, has_area};
 use super::source::Files;
-use super::{Geometry, Material, Scattering, Triangle, Vertex};
+use super::{Geometry, Light, Material, Scattering, Triangle, Vertex};
 
 /// What is wrong with a mesh file, and what to do about it.
 pub(super) type Problem = (String, &'static str);
 
 /// What a mesh file holds.
+#[derive(Default)]
 pub(super) struct Mesh {
     pub(super) parts: Vec<Part>,
     pub(super) materials: Vec<Material>,
+    /// Lights of the file that are no surfaces, in the coordinates of the parts.
+    pub(super) lights: Vec<Light>,
+    /// What the file holds and the picture will lack, each in a few words: `morph targets`, `texture "bark.webp" (WebP)`.
+    pub(super) left_out: Vec<String>,
 }
 
 /// Triangles of one material.
+#[derive(Default)]
 pub(super) struct Part {
     pub(super) positions: Vec<Vec3>,
     /// One a position, or none at all.
     pub(super) normals: Vec<Vec3>,
+    /// Linear RGB from 0 to 1, one a position, or none at all.
+    pub(super) colours: Vec<Vec3>,
+    /// Places in the material's reflectance texture and in its emission texture, one a position each, or none at all.
+    pub(super) coordinates: [Vec<Vec2>; 2],
     /// Indices into the positions, inside them.
     pub(super) triangles: Vec<[u32; 3]>,
     /// Index into the mesh's materials.
@@ -44,6 +54,9 @@ pub(super) fn load(files: &Files, name: &str) -> Result<Mesh, Problem> {
     for part in &mesh.parts {
         check(part)?;
     }
+    if !mesh.left_out.is_empty() {
+        tracing::warn!("{name}: left out: {}", mesh.left_out.join("; "));
+    }
     if mesh.parts.iter().all(|part| part.triangles.is_empty()) {
         return Err(("the mesh has no triangle".to_owned(), "export the mesh with its faces"));
     }
@@ -58,6 +71,9 @@ fn check(part: &Part) -> Result<(), Problem> {
     }
     if let Some(number) = broken(&part.normals) {
         return Err((format!("the normal of vertex {} is {}", number + 1, part.normals[number]), REMEDY));
+    }
+    if let Some(number) = part.colours.iter().position(|colour| !colour.is_finite()) {
+        return Err((format!("the colour of vertex {} is {}", number + 1, part.colours[number]), REMEDY));
     }
     let vertices = part.positions.len();
     if part.triangles.iter().flatten().any(|&vertex| vertex as usize >= vertices) {
@@ -94,13 +110,20 @@ pub(super) fn add(
         if !smooth {
             for triangle in whole {
                 geometry.push_flat(corners(triangle), surface, material);
+                let first = geometry.vertices.len() - 3;
+                for (vertex, &index) in geometry.vertices[first..].iter_mut().zip(triangle) {
+                    part.dress(index, vertex);
+                }
             }
             continue;
         }
         let first = u32::try_from(geometry.vertices.len()).expect("fewer than 2^32 vertices fit into memory");
         let normals = smooth_normals(part, &whole);
-        let vertices = part.positions.iter().zip(normals);
-        geometry.vertices.extend(vertices.map(|(&position, normal)| Vertex { position, normal }));
+        for (index, (&position, normal)) in (0..).zip(part.positions.iter().zip(normals)) {
+            let mut vertex = Vertex::plain(position, normal);
+            part.dress(index, &mut vertex);
+            geometry.vertices.push(vertex);
+        }
         geometry.triangles.extend(whole.into_iter().map(|triangle| Triangle {
             vertices: triangle.map(|vertex| first + vertex),
             surface,
@@ -119,6 +142,16 @@ pub(super) fn add(
         );
     }
     Ok(())
+}
+
+impl Part {
+    /// Gives a vertex the colour and the texture coordinates of a position.
+    fn dress(&self, index: u32, vertex: &mut Vertex) {
+        let index = index as usize;
+        vertex.colour = self.colours.get(index).copied().unwrap_or(Vec3::ONE);
+        vertex.coordinates =
+            [0, 1].map(|kind: usize| self.coordinates[kind].get(index).copied().unwrap_or_default());
+    }
 }
 
 /// The file's normals, or else the means of the faces around each vertex, by the angle that each has there, so that it does
@@ -153,6 +186,14 @@ fn checked(material: Material) -> Result<Material, Problem> {
             format!("the index of refraction of material \"{name}\" is {index}"),
             "it goes from 0.1 to 10",
         )),
+        Scattering::ThinDielectric { index, transmittance }
+            if !(0.1..=10.0).contains(&index) || !share(transmittance) =>
+        {
+            Err((
+                format!("the index {index} or transmittance {transmittance} of material \"{name}\" is not possible"),
+                "the index goes from 0.1 to 10, the transmittance from 0 to 1",
+            ))
+        }
         _ if !(material.emission.is_finite() && material.emission.min_element() >= 0.0) => {
             Err((format!("the emission of material \"{name}\" is {}", material.emission), "it starts at 0"))
         }

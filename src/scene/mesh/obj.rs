@@ -35,10 +35,12 @@ pub(super) fn read(content: &[u8], files: &Files, name: &str) -> Result<Mesh, Pr
             },
             triangles: mesh.indices.as_chunks::<3>().0.to_vec(),
             material: mesh.material_id.and_then(|material| u32::try_from(material).ok()),
+            ..Part::default()
         }
     });
     let parts = parts.collect();
-    Ok(Mesh { parts, materials: materials.into_iter().map(material).collect::<Result<_, _>>()? })
+    let materials = materials.into_iter().map(material).collect::<Result<_, _>>()?;
+    Ok(Mesh { parts, materials, ..Mesh::default() })
 }
 
 /// Illumination models 4, 6, 7 and 9 are glass, 3, 5 and 8 mirrors, and others diffuse
@@ -50,5 +52,5 @@ fn material(found: tobj::Material) -> Result<Material, Problem> {
         Some(3 | 5 | 8) => Scattering::Mirror(colour(found.specular)),
         _ => Scattering::Lambert(colour(found.diffuse)),
     };
-    super::checked(Material { name: found.name, scattering, emission: colour(found.emissive) })
+    super::checked(Material::plain(found.name, scattering, colour(found.emissive)))
 }
