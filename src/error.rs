@@ -25,6 +25,13 @@ pub enum Error {
         remedy: String,
     },
 
+    /// A scene that sends no light.
+    #[error(
+        "no light of the scene shines\nhelp: give it one, such as [lights.lamp] with quad and radiance, or a material with \
+         emission"
+    )]
+    NoLight,
+
     /// A setting outside its range.
     #[error("{name} = {value} is not possible: {reason}")]
     Setting {

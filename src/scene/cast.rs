@@ -7,7 +7,7 @@
 
 use std::time::Duration;
 
-use glam::{DVec3, Vec3, Vec3A};
+use glam::{DVec2, DVec3, Vec3, Vec3A};
 use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
@@ -130,6 +130,11 @@ impl Target {
         intersect_sphere(ray, centre, radius)
     }
 
+    /// The shares of the second and third corner of the triangle at `position`; nothing for a sphere.
+    pub(super) fn shares(&self, primitive: u32, position: DVec3) -> Option<DVec2> {
+        self.triangles.get(primitive as usize).map(|edges| edges.shares(position))
+    }
+
     /// All about the place at `distance` along the ray, which is on `primitive`.
     pub(super) fn hit(&self, geometry: &Geometry, ray: &Ray, distance: f64, primitive: u32) -> Hit {
         let position = ray.origin + distance * ray.direction;
@@ -139,9 +144,7 @@ impl Target {
             let across = edges.edge1.cross(edges.edge2);
             let normal = across.normalize();
             let smooth_normal = if triangle.smooth {
-                let from_corner = position - edges.corner;
-                let second = from_corner.cross(edges.edge2).dot(across) / across.length_squared();
-                let third = edges.edge1.cross(from_corner).dot(across) / across.length_squared();
+                let DVec2 { x: second, y: third } = edges.shares(position);
                 let [a, b, c] =
                     triangle.vertices.map(|vertex| geometry.vertices[vertex as usize].normal.as_dvec3());
                 ((1.0 - second - third) * a + second * b + third * c).normalize_or(normal)

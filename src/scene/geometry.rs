@@ -1,6 +1,8 @@
 //! Triangles and spheres, as they are rasterised and as rays see them.
 
 use bytemuck::{Pod, Zeroable};
+#[cfg(feature = "render")]
+use glam::DVec3;
 use glam::{Vec2, Vec3};
 
 /// A corner of triangles.
@@ -96,6 +98,16 @@ impl Geometry {
             .reduce(|(min, max), (low, high)| (min.min(low), max.max(high)))
             .unwrap_or((Vec3::ZERO, Vec3::ZERO))
     }
+}
+
+/// The normal of a triangle, and the distance of its plane from `origin` along it, in scene units.
+#[cfg(feature = "render")]
+pub(crate) fn plane(corners: [Vec3; 3], origin: DVec3) -> (Vec3, f32) {
+    let [a, b, c] = corners.map(Vec3::as_dvec3);
+    let normal = (b - a).cross(c - a).normalize();
+    #[expect(clippy::cast_possible_truncation, reason = "what a shader takes")]
+    let distance = normal.dot(a - origin) as f32;
+    (normal.as_vec3(), distance)
 }
 
 impl Sphere {

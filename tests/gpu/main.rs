@@ -14,6 +14,8 @@ mod exactness;
 mod faults;
 mod frame_path;
 mod frames;
+#[cfg(feature = "render")]
+mod furnace;
 mod host;
 mod host_picture;
 mod interface;

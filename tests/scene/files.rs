@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 use varikernel::glam::Vec3;
-use varikernel::scene::{LightShape, Scattering, Scene};
+use varikernel::scene::{AreaLight, LightShape, Scattering, Scene};
 
 use crate::{BARE, load, shipped_text};
 
@@ -60,7 +60,7 @@ fn the_cornell_boxes_hold_the_committed_numbers() {
         assert_eq!(scene.lights().len(), 1);
         assert_eq!(
             scene.lights()[0].shape,
-            LightShape::Area { triangles: found, radiance: vector(&lamp["radiance"]) }
+            LightShape::Area(AreaLight::new(found, vector(&lamp["radiance"]), None))
         );
         assert_eq!(geometry.spheres.len(), spheres.len());
         for (found, expected) in geometry.spheres.iter().zip(spheres) {

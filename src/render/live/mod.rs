@@ -64,8 +64,9 @@ struct Shown {
 impl Shown {
     fn new(stage: &SurfaceStage, scene: &Scene, settings: &LiveSettings) -> Result<Self> {
         let view = settings.view(scene);
-        let surfaces = stage.draw(scene, view)?;
+        let mut surfaces = stage.draw(scene, view)?;
         let sight = Sight::new(scene, &view);
+        sight.paint(&mut surfaces)?;
         let through = ProgressiveThrough::new(view, sight.bent.clone());
         Ok(Self { surfaces, direct: ProgressiveDirect::new(settings.size, sight, settings.seed), through })
     }
