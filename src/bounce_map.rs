@@ -44,7 +44,8 @@ impl BounceMaps {
         let end = (first..end).find(|&id| emission.light(id) != light).unwrap_or(end);
         // What no map tells is met by a ray.
         if emission.is_aimed(light) {
-            let met_by_rays = (first..end).map(|id| FirstHit { photon: emission.photon(id), primitive: u32::MAX });
+            let met_by_rays =
+                (first..end).map(|id| FirstHit { photon: emission.photon(id), primitive: u32::MAX });
             return Ok(Some(met_by_rays.collect()));
         }
         let place = emission.photon(first.midpoint(end - 1)).origin;

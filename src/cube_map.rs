@@ -164,13 +164,7 @@ fn corners(scene: &Scene) -> Vec<Corner> {
     let corners = numbered.flat_map(|(number, triangle): (u32, _)| {
         let places = geometry.corners(triangle);
         let (normal, distance) = plane(places, DVec3::ZERO);
-        places.map(|position| Corner {
-            position,
-            normal,
-            unused: [0.0; 3],
-            distance,
-            number: number as f32,
-        })
+        places.map(|position| Corner { position, normal, unused: [0.0; 3], distance, number: number as f32 })
     });
     corners.collect()
 }

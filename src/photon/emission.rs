@@ -69,7 +69,9 @@ impl<'a> Emission<'a> {
         let weights: Vec<f64> = shining.iter().map(|light| light.flux().element_sum()).collect();
         let Some(counts) = counts(&weights, settings.photons) else {
             let lights = shining.len();
-            return refuse(format!("each of the {lights} lights takes at least one; ask for {lights} or more"));
+            return refuse(format!(
+                "each of the {lights} lights takes at least one; ask for {lights} or more"
+            ));
         };
         let surroundings = Surroundings::new(scene);
         let (mut parts, mut first) = (Vec::new(), 0);
@@ -195,21 +197,12 @@ impl Cone {
     }
 }
 
-fn leave_point(
-    position: DVec3,
-    cone: &Cone,
-    intensity: DVec3,
-    aim: Option<&Aim>,
-    uv: [f64; 2],
-) -> Leaving {
+fn leave_point(position: DVec3, cone: &Cone, intensity: DVec3, aim: Option<&Aim>, uv: [f64; 2]) -> Leaving {
     let aimed = aim.map(|aim| aim.cone(position)).filter(|aimed| aimed.height < cone.height);
     let chosen = aimed.as_ref().unwrap_or(cone);
     let direction = chosen.direction(uv);
-    let power = if cone.holds(direction) || aimed.is_none() {
-        chosen.solid_angle() * intensity
-    } else {
-        DVec3::ZERO
-    };
+    let power =
+        if cone.holds(direction) || aimed.is_none() { chosen.solid_angle() * intensity } else { DVec3::ZERO };
     Leaving { origin: position, direction, power }
 }
 

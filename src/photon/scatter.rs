@@ -34,6 +34,7 @@ pub fn refract(direction: DVec3, normal: DVec3, ratio: f64) -> Option<(DVec3, f6
 #[must_use]
 pub fn reflected_by_pane(cos: f64, index: f32) -> f64 {
     let direction = DVec3::new((1.0 - cos * cos).max(0.0).sqrt(), 0.0, -cos);
-    let one_face = refract(direction, DVec3::Z, 1.0 / f64::from(index)).map_or(1.0, |(_, reflected)| reflected);
+    let one_face =
+        refract(direction, DVec3::Z, 1.0 / f64::from(index)).map_or(1.0, |(_, reflected)| reflected);
     2.0 * one_face / (1.0 + one_face)
 }

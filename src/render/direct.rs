@@ -41,13 +41,7 @@ pub(super) fn reflected(scene: &Scene, place: &Place, samples: u32, dice: &mut D
 }
 
 /// Irradiance from all lights at `position`, on the side to which `normal` points.
-fn irradiance(
-    scene: &Scene,
-    position: DVec3,
-    normal: DVec3,
-    samples: u32,
-    dice: &mut Dice,
-) -> DVec3 {
+fn irradiance(scene: &Scene, position: DVec3, normal: DVec3, samples: u32, dice: &mut Dice) -> DVec3 {
     let start = scene.start(position, normal);
     let visible = |to: DVec3| {
         let away = to - start;

@@ -125,7 +125,11 @@ impl Renderer {
         points.upload(&seen)?;
         let grid = (!light.bent.is_empty()).then(|| PhotonGrid::new(photons, scene.bounds()));
         let count = u32::try_from(photons.len()).expect("fewer than 2^32 photons");
-        Self::assemble(gl, light, Traced { emitted: count, landings: count.into(), cut_off_share: 0.0, points, grid })
+        Self::assemble(
+            gl,
+            light,
+            Traced { emitted: count, landings: count.into(), cut_off_share: 0.0, points, grid },
+        )
     }
 
     fn assemble(gl: &Gl, light: Light, traced: Traced) -> Result<Self> {

@@ -63,13 +63,11 @@ impl Traced {
             progress(Progress { stage: "photons", done: f64::from(followed) / f64::from(trace.photons) });
         };
         let tally = match first_bounce {
-            FirstBounce::Rays => {
-                trace_in_batches(scene, &emission, |photons, followed| {
-                    keep(photons, &mut points)?;
-                    show(followed);
-                    Ok::<_, crate::Error>(())
-                })?
-            }
+            FirstBounce::Rays => trace_in_batches(scene, &emission, |photons, followed| {
+                keep(photons, &mut points)?;
+                show(followed);
+                Ok::<_, crate::Error>(())
+            })?,
             FirstBounce::Maps => {
                 let mut maps = BounceMaps::new(gl, scene)?;
                 let (mut all, mut followed) = (Tally::default(), 0);

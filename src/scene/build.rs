@@ -11,7 +11,8 @@ use super::format::{LightEntry, MaterialEntry, MeshEntry, SceneEntry, SurfaceEnt
 use super::mesh;
 use super::source::{Files, Text};
 use super::{
-    AreaLight, Camera, Geometry, Light, LightShape, Material, PlacedTexture, Scattering, Scene, Sphere, Triangle,
+    AreaLight, Camera, Geometry, Light, LightShape, Material, PlacedTexture, Scattering, Scene, Sphere,
+    Triangle,
 };
 use crate::{Error, Result};
 

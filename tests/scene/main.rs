@@ -6,6 +6,7 @@
 
 mod cast;
 mod files;
+mod lights;
 mod meshes;
 mod optics;
 mod physics;
