@@ -123,7 +123,7 @@ impl Renderer {
         let view = light.surfaces.view();
         let seen: Vec<_> = photons.iter().copied().filter(|photon| photon.may_be_seen(view)).collect();
         points.upload(&seen)?;
-        let grid = (!light.bent.is_empty()).then(|| PhotonGrid::new(photons, scene.bounds()));
+        let grid = (!light.bent.is_empty()).then(|| PhotonGrid::new(photons));
         let count = u32::try_from(photons.len()).expect("fewer than 2^32 photons");
         Self::assemble(
             gl,

@@ -83,7 +83,7 @@ impl Traced {
             }
         };
         points.upload(&seen)?;
-        let grid = needs_grid.then(|| PhotonGrid::new(&all, scene.bounds()));
+        let grid = needs_grid.then(|| PhotonGrid::new(&all));
         let cut_off_share = tally.power_cut_off().element_sum() / emission.flux().element_sum();
         Ok(Self { emitted: trace.photons, landings: tally.total(), cut_off_share, points, grid })
     }

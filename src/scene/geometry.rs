@@ -87,14 +87,21 @@ impl Geometry {
         });
     }
 
+    /// The opposite corners of the box around each primitive.
+    pub(super) fn boxes(&self) -> Vec<(Vec3, Vec3)> {
+        let around_triangles = self.triangles.iter().map(|triangle| {
+            let [a, b, c] = self.corners(triangle);
+            (a.min(b).min(c), a.max(b).max(c))
+        });
+        around_triangles.chain(self.spheres.iter().map(Sphere::around)).collect()
+    }
+
     /// The opposite corners of the box around everything.
     #[must_use]
     pub fn bounds(&self) -> (Vec3, Vec3) {
         let points = self.vertices.iter().map(|vertex| (vertex.position, vertex.position));
-        let spheres =
-            self.spheres.iter().map(|sphere| (sphere.centre - sphere.radius, sphere.centre + sphere.radius));
         points
-            .chain(spheres)
+            .chain(self.spheres.iter().map(Sphere::around))
             .reduce(|(min, max), (low, high)| (min.min(low), max.max(high)))
             .unwrap_or((Vec3::ZERO, Vec3::ZERO))
     }
@@ -111,6 +118,11 @@ pub(crate) fn plane(corners: [Vec3; 3], origin: DVec3) -> (Vec3, f32) {
 }
 
 impl Sphere {
+    /// The opposite corners of the box around it.
+    fn around(&self) -> (Vec3, Vec3) {
+        (self.centre - self.radius, self.centre + self.radius)
+    }
+
     /// A cube around the sphere, a little larger, as 36 corners of triangles for a rasteriser.
     #[cfg(feature = "render")]
     pub(crate) fn cube(&self) -> [Vec3; 36] {

@@ -17,6 +17,7 @@ mod mesh;
 mod shipped;
 mod source;
 mod texture;
+mod tree;
 
 pub use cast::Hit;
 #[cfg(feature = "render")]

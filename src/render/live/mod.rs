@@ -172,7 +172,7 @@ impl Live {
         lap("photons");
         shown.direct.step(scene, settings.shadow_rays_per_step);
         lap("direct light");
-        shown.through.step(scene, indirect, &settings.irradiance, scale);
+        shown.through.step(indirect, &settings.irradiance, scale);
         lap("mirrors and glass");
         points.replace(&seen)?;
         let irradiance = pipeline.add(&shown.surfaces, points)?;
