@@ -217,7 +217,7 @@ fn a_scene_file_may_have_a_byte_order_mark_and_ends_of_lines_as_on_windows() {
     let plain = load(&text).unwrap();
     for changed in [format!("\u{feff}{text}"), text.replace('\n', "\r\n")] {
         assert_eq!(load(&changed).unwrap().geometry(), plain.geometry());
-        let wrong = changed.replace("position = [", "position = [nan, ");
+        let wrong = changed.replace("position = [278", "position = [nan");
         assert!(
             load(&wrong).unwrap_err().to_string().contains("line 5, `position"),
             "{}",

@@ -20,7 +20,10 @@ pub(super) struct Libraries<'a> {
     files: &'a Files,
     /// The OBJ file, beside which they lie.
     obj: &'a str,
-    tried: HashSet<String>,
+    /// Lines that were read.
+    lines: HashSet<Name>,
+    /// Paths that were tried, and what is wrong with those that could not be read.
+    tried: HashMap<String, Option<String>>,
     /// Paths and contents, in the order in which they are searched.
     found: Vec<(String, Vec<u8>)>,
     /// Those that could not be read: which, in which line, and why.
@@ -50,7 +53,14 @@ pub(super) struct Found {
 impl<'a> Libraries<'a> {
     /// None, for an OBJ file at `obj`.
     pub(super) fn new(files: &'a Files, obj: &'a str) -> Self {
-        Self { files, obj, tried: HashSet::new(), found: Vec::new(), missing: Vec::new() }
+        Self {
+            files,
+            obj,
+            lines: HashSet::new(),
+            tried: HashMap::new(),
+            found: Vec::new(),
+            missing: Vec::new(),
+        }
     }
 
     /// Reads what a line names: one file, whose name may have blanks, or else several.
@@ -63,7 +73,7 @@ impl<'a> Libraries<'a> {
             let problem = format!("{}: more than {MAX_LIBRARIES} MTL files are named", line.place());
             return Err((problem, "put the materials into one MTL file"));
         }
-        if name.bare.is_empty() || self.open(&name.whole).is_ok() {
+        if name.bare.is_empty() || !self.lines.insert(name.clone()) || self.open(&name.whole).is_ok() {
             return Ok(());
         }
         let Err(problem) = self.open(&name.bare) else { return Ok(()) };
@@ -86,19 +96,20 @@ impl<'a> Libraries<'a> {
     /// Reads a file, if that has not been done.
     fn open(&mut self, name: &str) -> Result<(), String> {
         let path = source::beside(self.obj, name)?;
-        if !self.tried.insert(path.clone()) {
-            return if self.found.iter().any(|(found, _)| *found == path) {
-                Ok(())
-            } else {
-                Err("could not be read, as said".to_owned())
-            };
-        }
-        let content = self.files.read(&path)?;
-        if source::is_utf16(&content) {
-            return Err("it is text in UTF-16; save it as UTF-8".to_owned());
-        }
-        self.found.push((path, content));
-        Ok(())
+        let problem = match self.tried.get(&path) {
+            Some(problem) => problem.clone(),
+            None => {
+                let content = self.files.read(&path);
+                let content = content.and_then(|content| match source::is_utf16(&content) {
+                    true => Err("it is text in UTF-16; save it as UTF-8".to_owned()),
+                    false => Ok(content),
+                });
+                let problem = content.map(|content| self.found.push((path.clone(), content))).err();
+                self.tried.insert(path, problem.clone());
+                problem
+            }
+        };
+        problem.map_or(Ok(()), Err)
     }
 
     /// What can't be read, where no material is needed.
