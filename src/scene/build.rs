@@ -257,7 +257,7 @@ impl Builder<'_> {
                 remedy,
             )
         };
-        let mut mesh = mesh::load(self.files, file).map_err(refuse)?;
+        let mut mesh = mesh::load(self.files, file, material.is_none()).map_err(refuse)?;
         if material.is_none() && mesh.parts.iter().any(|part| part.material.is_none()) {
             let problem = "parts of the mesh have no material, nor has the surface".to_owned();
             return Err(refuse((problem, "give the surface a material")));

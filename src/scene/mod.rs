@@ -69,10 +69,7 @@ impl Scene {
     /// area, an unknown material, a mesh that can't be read or lies outside the scene's folder.
     pub fn load(path: &Path) -> Result<Self> {
         let content = source::read(path)?;
-        let content = str::from_utf8(&content).map_err(|error| {
-            let problem = format!("byte {} is not text", error.valid_up_to());
-            Error::file(path, problem, "give a scene file, which is TOML in UTF-8")
-        })?;
+        let content = source::text(path, &content)?;
         let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
         build::scene(&Text { path, content }, &Files::Folder(folder.to_owned()))
     }

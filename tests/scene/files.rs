@@ -199,6 +199,29 @@ fn scenes_that_are_no_files_or_no_text_are_refused() {
     assert!(message("").contains("is a folder"));
     std::fs::write(folder.path().join("bytes.toml"), b"title = \"\xff\"").unwrap();
     assert!(message("bytes.toml").contains("byte 9 is not text"));
+    for text in [b"\xff\xfet\0=\0".as_slice(), b"\xfe\xff\0t\0=", b"t\0=\0", b"\0t\0="] {
+        std::fs::write(folder.path().join("wide.toml"), text).unwrap();
+        let message = message("wide.toml");
+        assert!(
+            message.contains("wide.toml: it is text in UTF-16\nhelp: save it again as UTF-8"),
+            "{message}"
+        );
+    }
     std::fs::write(folder.path().join("empty.toml"), b"").unwrap();
     assert!(message("empty.toml").contains("missing field `camera`"));
+}
+
+#[test]
+fn a_scene_file_may_have_a_byte_order_mark_and_ends_of_lines_as_on_windows() {
+    let text = shipped_text("cornell_empty.toml");
+    let plain = load(&text).unwrap();
+    for changed in [format!("\u{feff}{text}"), text.replace('\n', "\r\n")] {
+        assert_eq!(load(&changed).unwrap().geometry(), plain.geometry());
+        let wrong = changed.replace("position = [278", "position = [nan");
+        assert!(
+            load(&wrong).unwrap_err().to_string().contains("line 5, `position"),
+            "{}",
+            load(&wrong).unwrap_err()
+        );
+    }
 }
