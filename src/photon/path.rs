@@ -62,7 +62,6 @@ pub(super) fn follow(
                 }
                 (cosine_around(facing, &mut random), facing)
             }
-            Scattering::ThinDielectric { .. } => return,
             Scattering::Mirror(reflectance) => {
                 power *= reflectance;
                 if power == Vec3::ZERO {

@@ -114,7 +114,6 @@ impl Sight {
                 };
                 if depth == 0 { self.straight.push(place) } else { self.bent.push(place) }
             }
-            Scattering::ThinDielectric { .. } => {}
             Scattering::Mirror(reflectance) => go(mirrored(ray, &hit, side), facing, share * reflectance),
             Scattering::Dielectric { index } => {
                 let ratio = if side > 0.0 { 1.0 / f64::from(index) } else { f64::from(index) };
