@@ -108,6 +108,10 @@ fn mtl_files_are_found_as_they_are_written() {
     ] {
         is_the_red_square(&obj(lines), &[(mtl, RED)]);
     }
+    is_the_red_square(
+        &obj("mtllib a.mtl|usemtl red"),
+        &[("a.mtl", b"\xef\xbb\xbf  newmtl\tred # mine\r\n\tKd\t0.6 0.1 0.1\r\n")],
+    );
     // The first file that has a material counts.
     let other = b"newmtl red\nKd 0 0 0\n";
     is_the_red_square(&obj("mtllib a.mtl b.mtl|usemtl red"), &[("a.mtl", RED), ("b.mtl", other)]);
@@ -218,6 +222,10 @@ fn materials_that_are_nowhere_are_told_by_both_files_and_the_line() {
     files(&obj("mtllib ../b.mtl"), &["../b.mtl (line 1): the path leaves the scene's folder"]);
     files(&obj(""), &["line 6, `usemtl red`: no MTL file is named"]);
     files(&obj("mtllib b.mtl"), &["no MTL file has this material", "there are: blue"]);
+    let wide: &[u8] = b"\xff\xfen\0e\0w\0";
+    let scene = with_mesh(OWN, &[("a.obj", obj("mtllib a.mtl").as_bytes()), ("a.mtl", wide)]);
+    let message = scene.unwrap_err().to_string();
+    assert!(message.contains("a.mtl (line 1): it is text in UTF-16; save it as UTF-8"), "{message}");
     files(&format!("mtllib b.mtl\n{CORNERS}f 1 2 3 4\n"), &["line 6: the face has no material"]);
     let many = (0..1100).map(|number| format!("mtllib {number}.mtl")).collect::<Vec<_>>().join("\n");
     files(&obj(&many), &["more than 1000 MTL files are named"]);
