@@ -85,7 +85,7 @@ pub(super) fn beside(file: &str, path: &str) -> Result<String, String> {
         return normal_form(path);
     }
     let folder = file.rsplit_once('/').map_or("", |(folder, _)| folder);
-    normal_form(&format!("{folder}/{path}").trim_start_matches('/'))
+    normal_form(format!("{folder}/{path}").trim_start_matches('/'))
 }
 
 /// Whether a content begins as text in UTF-16 does: by its byte order mark, or by a letter and a zero byte.

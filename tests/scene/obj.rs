@@ -108,6 +108,10 @@ fn mtl_files_are_found_as_they_are_written() {
     ] {
         is_the_red_square(&obj(lines), &[(mtl, RED)]);
     }
+    is_the_red_square(
+        &obj("mtllib a.mtl|usemtl red"),
+        &[("a.mtl", b"\xef\xbb\xbf  newmtl\tred # mine\r\n\tKd\t0.6 0.1 0.1\r\n")],
+    );
     // The first file that has a material counts.
     let other = b"newmtl red\nKd 0 0 0\n";
     is_the_red_square(&obj("mtllib a.mtl b.mtl|usemtl red"), &[("a.mtl", RED), ("b.mtl", other)]);
@@ -147,6 +151,9 @@ fn a_usemtl_without_a_name_is_grey() {
     let scene = with_mesh(OWN, &[("a.obj", obj.as_bytes())]).unwrap();
     let grey = scene.materials().iter().find(|material| material.name == "grey").unwrap();
     assert_eq!(grey.scattering, Scattering::Lambert(Vec3::splat(0.8)));
+    let obj = format!("{CORNERS}usemtl\nf 1 2 3\nusemtl # none\nf 1 3 4\n");
+    let scene = with_mesh(OWN, &[("a.obj", obj.as_bytes())]).unwrap();
+    assert!(triangles(&scene).iter().all(|(_, material)| *material == "grey"));
 }
 
 #[test]
@@ -194,7 +201,7 @@ fn what_is_wrong_is_told_by_line() {
     ] {
         refuses(OBJ, &[("a.obj", with(line).as_bytes())], &[words]);
     }
-    refuses(OBJ, &[("a.obj", b"v\0 \01\0")], &["a.obj: it is text in UTF-16", "save it as UTF-8"]);
+    refuses(OBJ, &[("a.obj", b"v\0 \x001\0")], &["a.obj: it is text in UTF-16", "save it as UTF-8"]);
 }
 
 #[test]
@@ -215,7 +222,11 @@ fn materials_that_are_nowhere_are_told_by_both_files_and_the_line() {
     files(&obj("mtllib ../b.mtl"), &["../b.mtl (line 1): the path leaves the scene's folder"]);
     files(&obj(""), &["line 6, `usemtl red`: no MTL file is named"]);
     files(&obj("mtllib b.mtl"), &["no MTL file has this material", "there are: blue"]);
+    let wide: &[u8] = b"\xff\xfen\0e\0w\0";
+    let scene = with_mesh(OWN, &[("a.obj", obj("mtllib a.mtl").as_bytes()), ("a.mtl", wide)]);
+    let message = scene.unwrap_err().to_string();
+    assert!(message.contains("a.mtl (line 1): it is text in UTF-16; save it as UTF-8"), "{message}");
     files(&format!("mtllib b.mtl\n{CORNERS}f 1 2 3 4\n"), &["line 6: the face has no material"]);
-    let many: String = (0..1100).map(|number| format!("mtllib {number}.mtl\n")).collect();
+    let many = (0..1100).map(|number| format!("mtllib {number}.mtl")).collect::<Vec<_>>().join("\n");
     files(&obj(&many), &["more than 1000 MTL files are named"]);
 }

@@ -31,7 +31,7 @@ pub(super) struct Faces {
     pub(super) coordinates: Vec<Vec2>,
     pub(super) normals: Vec<Vec3>,
     corners: Vec<Corner>,
-    faces: Vec<Face>,
+    list: Vec<Face>,
 }
 
 impl Corner {
@@ -82,16 +82,16 @@ impl Faces {
             self.corners.truncate(first);
             return Ok(false);
         }
-        self.faces.push(Face { line: line.number, material, end: self.corners.len() });
+        self.list.push(Face { line: line.number, material, end: self.corners.len() });
         Ok(true)
     }
 
     /// The uses of materials that faces have, and the first line of a face without one.
     pub(super) fn uses(&self) -> (Vec<u32>, Option<usize>) {
-        let mut uses: Vec<_> = self.faces.iter().filter_map(|face| face.material).collect();
+        let mut uses: Vec<_> = self.list.iter().filter_map(|face| face.material).collect();
         uses.sort_unstable();
         uses.dedup();
-        (uses, self.faces.iter().find(|face| face.material.is_none()).map(|face| face.line))
+        (uses, self.list.iter().find(|face| face.material.is_none()).map(|face| face.line))
     }
 
     /// The faces as parts, in the order of the file: one for all faces in a row that are alike. `material` gives the index of a
@@ -106,7 +106,7 @@ impl Faces {
         let mut cutter = Cutter::default();
         let (mut places, mut indices) = (Vec::new(), Vec::new());
         let mut begin = 0;
-        for face in &self.faces {
+        for face in &self.list {
             let corners = &self.corners[begin..face.end];
             begin = face.end;
             let known = |index: u32, count: usize| (1..=count).contains(&(index as usize));
@@ -117,10 +117,11 @@ impl Faces {
                     format!("line {}: a face names vertex {vertex}, and there are {count}", face.line);
                 return Err((problem, "export the mesh again as OBJ"));
             }
-            let placed = corners.iter().all(|corner| known(corner.coordinate, self.coordinates.len()));
-            let bent = corners.iter().all(|corner| known(corner.normal, self.normals.len()));
+            let has_coordinates =
+                corners.iter().all(|corner| known(corner.coordinate, self.coordinates.len()));
+            let has_normals = corners.iter().all(|corner| known(corner.normal, self.normals.len()));
 
-            let kind = (face.material, placed, bent);
+            let kind = (face.material, has_coordinates, has_normals);
             if last != Some(kind) {
                 last = Some(kind);
                 vertices = HashMap::new();
@@ -132,8 +133,8 @@ impl Faces {
             for corner in corners {
                 let corner = Corner {
                     position: corner.position,
-                    coordinate: if placed { corner.coordinate } else { 0 },
-                    normal: if bent { corner.normal } else { 0 },
+                    coordinate: if has_coordinates { corner.coordinate } else { 0 },
+                    normal: if has_normals { corner.normal } else { 0 },
                 };
                 let place = self.positions[corner.position as usize - 1];
                 places.push(place);

@@ -57,13 +57,12 @@ impl<'a> Rest<'a> {
         // A comment that ends with a backslash, such as a Windows path, doesn't swallow the next line.
         while before_comment(last).len() == last.len()
             && let Some((b'\\', _)) = last.trim_ascii_end().split_last()
-            && let Some(next) = self.next()
         {
             let text = text.to_mut();
             text.truncate(text.trim_ascii_end().len() - 1);
             text.push(b' ');
-            text.extend_from_slice(next);
-            last = next;
+            last = self.next().unwrap_or_default();
+            text.extend_from_slice(last);
         }
         Some(Line { number, text })
     }
@@ -157,7 +156,7 @@ mod tests {
     fn a_backslash_joins_lines_but_not_in_a_comment() {
         assert_eq!(
             read(b"f 1\\\n 2 \\ \r\n3\n# C:\\\nv 1 # D:\\\nv 2\\"),
-            [(1, "f 1  2  3".to_owned()), (5, "v 1 # D:\\".to_owned()), (6, "v 2\\".to_owned())]
+            [(1, "f 1  2  3".to_owned()), (5, "v 1 # D:\\".to_owned()), (6, "v 2 ".to_owned())]
         );
     }
 

@@ -96,19 +96,15 @@ impl<'a> Libraries<'a> {
     /// Reads a file, if that has not been done.
     fn open(&mut self, name: &str) -> Result<(), String> {
         let path = source::beside(self.obj, name)?;
-        let problem = match self.tried.get(&path) {
-            Some(problem) => problem.clone(),
-            None => {
-                let content = self.files.read(&path);
-                let content = content.and_then(|content| match source::is_utf16(&content) {
-                    true => Err("it is text in UTF-16; save it as UTF-8".to_owned()),
-                    false => Ok(content),
-                });
-                let problem = content.map(|content| self.found.push((path.clone(), content))).err();
-                self.tried.insert(path, problem.clone());
-                problem
-            }
-        };
+        if let Some(problem) = self.tried.get(&path) {
+            return problem.clone().map_or(Ok(()), Err);
+        }
+        let content = self.files.read(&path).and_then(|content| {
+            let wide = source::is_utf16(&content);
+            if wide { Err("it is text in UTF-16; save it as UTF-8".to_owned()) } else { Ok(content) }
+        });
+        let problem = content.map(|content| self.found.push((path.clone(), content))).err();
+        self.tried.insert(path, problem.clone());
         problem.map_or(Ok(()), Err)
     }
 
@@ -117,55 +113,32 @@ impl<'a> Libraries<'a> {
         self.missing.into_iter().map(|missing| format!("materials of {missing}")).collect()
     }
 
-    /// The materials of `uses`, each with its index. A `usemtl` without a name is grey.
+    /// The materials that faces use, each with its index. A `usemtl` without a name is grey.
     ///
     /// # Errors
     /// If one is in no file, or can't be used as it is.
-    pub(super) fn materials(self, uses: &[(u32, &Use)]) -> Result<Found, Problem> {
-        let read: Vec<Vec<Entry<'_>>> = self.found.iter().map(|(_, content)| mtl::entries(content)).collect();
-        let mut places: [HashMap<&str, (usize, usize)>; 2] = Default::default();
-        let mut left_out = Vec::new();
-        for (file, entries) in read.iter().enumerate() {
-            for (number, entry) in entries.iter().enumerate() {
-                let first = *places[0].entry(&entry.name.whole).or_insert((file, number));
-                places[1].entry(&entry.name.bare).or_insert((file, number));
-                if first.0 == file && first.1 != number {
-                    let name = shown(&entry.name.whole);
-                    left_out.push(format!(
-                        "a second material \"{name}\" of {} (line {})",
-                        self.found[file].0, entry.line
-                    ));
-                }
+    pub(super) fn materials(self, wanted: &[(u32, &Use)]) -> Result<Found, Problem> {
+        let files: Vec<_> = self.found.iter().map(|(path, content)| (path, mtl::entries(content))).collect();
+        let mut found = Found::default();
+        let known = Known::new(&files, &mut found.left_out);
+        let mut users: BTreeMap<Place, Vec<u32>> = BTreeMap::new();
+        let mut nameless = Vec::new();
+        for &(index, one) in wanted {
+            if one.name.bare.is_empty() {
+                nameless.push(index);
+                let line = one.line;
+                let note = format!("the material of a usemtl without a name (line {line}), a grey is taken");
+                found.left_out.push(note);
+            } else {
+                let place = known.find(&one.name).ok_or_else(|| self.unknown(one, &files))?;
+                users.entry(place).or_default().push(index);
             }
         }
-        let find = |name: &Name| {
-            let [whole, bare] = [&name.whole, &name.bare].map(String::as_str);
-            let [by_whole, by_bare] = &places;
-            by_whole
-                .get(whole)
-                .or_else(|| by_whole.get(bare))
-                .or_else(|| by_bare.get(whole))
-                .or_else(|| by_bare.get(bare))
-        };
-
-        let mut used: BTreeMap<(usize, usize), Vec<u32>> = BTreeMap::new();
-        let mut nameless = None;
-        for &(index, wanted) in uses {
-            if wanted.name.bare.is_empty() {
-                nameless = Some((index, wanted.line));
-                continue;
-            }
-            let place = find(&wanted.name).ok_or_else(|| self.unknown(wanted, &read))?;
-            used.entry(*place).or_default().push(index);
-        }
-
-        let mut found = Found { left_out, ..Found::default() };
-        for (file, entries) in read.iter().enumerate() {
+        for (file, (path, entries)) in files.iter().enumerate() {
             for (number, entry) in entries.iter().enumerate() {
-                let users = used.get(&(file, number));
                 let name = &entry.name.whole;
-                let of = format!("material \"{}\" of {}", shown(name), self.found[file].0);
-                match (entry.material(name.clone()), users) {
+                let of = format!("material \"{}\" of {path}", shown(name));
+                match (entry.material(name.clone()), users.get(&(file, number))) {
                     (Ok((material, notes)), Some(users)) => {
                         found.take(material, users);
                         if !notes.is_empty() {
@@ -174,39 +147,69 @@ impl<'a> Libraries<'a> {
                     }
                     (Err((problem, remedy)), Some(_)) => return Err((format!("{of}, {problem}"), remedy)),
                     (Err((problem, _)), None) => {
-                        found.left_out.push(format!("{of}, which no face has, {problem}"))
+                        found.left_out.push(format!("{of}, which no face has, {problem}"));
                     }
                     (Ok(_), None) => {}
                 }
             }
         }
-        if let Some((index, line)) = nameless {
-            found
-                .left_out
-                .push(format!("the material of a usemtl without a name (line {line}), a grey is taken"));
-            found.take(mtl::grey("grey".to_owned()), &[index]);
+        if !nameless.is_empty() {
+            found.take(mtl::grey("grey".to_owned()), &nameless);
         }
         found.left_out.extend(self.missing());
         Ok(found)
     }
 
     /// A used material that is nowhere.
-    fn unknown(&self, wanted: &Use, read: &[Vec<Entry<'_>>]) -> Problem {
-        let mut problem = format!("line {}, `usemtl {}`: ", wanted.line, shown(&wanted.name.whole));
-        problem += match (&self.found[..], &self.missing[..]) {
+    fn unknown(&self, wanted: &Use, files: &[(&String, Vec<Entry<'_>>)]) -> Problem {
+        let problem = match (&self.found[..], &self.missing[..]) {
             ([], []) => "no MTL file is named (mtllib)",
             ([], _) => "its MTL file can't be read",
             _ => "no MTL file has this material",
         };
-        for missing in self.missing.iter().take(MAX_LISTED) {
-            problem += &format!("; {missing}");
-        }
-        let known: Vec<_> =
-            read.iter().flatten().map(|entry| shown(&entry.name.whole)).take(MAX_LISTED).collect();
+        let place = format!("line {}, `usemtl {}`: ", wanted.line, shown(&wanted.name.whole));
+        let mut told = vec![place + problem];
+        told.extend(self.missing.iter().take(MAX_LISTED).cloned());
+        let entries = files.iter().flat_map(|(_, entries)| entries);
+        let known: Vec<_> = entries.map(|entry| shown(&entry.name.whole)).take(MAX_LISTED).collect();
         if !known.is_empty() {
-            problem += &format!("; there are: {}", known.join(", "));
+            told.push(format!("there are: {}", known.join(", ")));
         }
-        (problem, REMEDY)
+        (told.join("; "), REMEDY)
+    }
+}
+
+/// A file's index and that of a material in it.
+type Place = (usize, usize);
+
+/// Where each name is found first, by the whole name and by what stands before a `#`.
+struct Known<'a> {
+    by_whole: HashMap<&'a str, Place>,
+    by_bare: HashMap<&'a str, Place>,
+}
+
+impl<'a> Known<'a> {
+    /// Says which materials come a second time in one file.
+    fn new(files: &'a [(&String, Vec<Entry<'_>>)], left_out: &mut Vec<String>) -> Self {
+        let mut known = Self { by_whole: HashMap::new(), by_bare: HashMap::new() };
+        for (file, (path, entries)) in files.iter().enumerate() {
+            for (number, entry) in entries.iter().enumerate() {
+                let (here, name) = ((file, number), &entry.name);
+                let first = *known.by_whole.entry(&name.whole).or_insert(here);
+                known.by_bare.entry(&name.bare).or_insert(here);
+                if first.0 == file && first != here {
+                    let (name, line) = (shown(&name.whole), entry.line);
+                    left_out.push(format!("a second material \"{name}\" of {path} (line {line})"));
+                }
+            }
+        }
+        known
+    }
+
+    fn find(&self, name: &Name) -> Option<Place> {
+        let [whole, bare] = [name.whole.as_str(), name.bare.as_str()];
+        let in_whole = self.by_whole.get(whole).or_else(|| self.by_whole.get(bare));
+        in_whole.or_else(|| self.by_bare.get(whole)).or_else(|| self.by_bare.get(bare)).copied()
     }
 }
 

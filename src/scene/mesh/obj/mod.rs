@@ -45,17 +45,17 @@ pub(super) fn read(
 
     let (faces, uses) = (&statements.faces, &statements.uses);
     let Found { materials, of_use, left_out } = if needs_materials {
-        let (used, without) = faces.uses();
+        let (indices, without) = faces.uses();
         if let Some(line) = without {
             let problem = format!("line {line}: the face has no material (usemtl), nor has the surface");
             return Err((problem, "give the surface a material"));
         }
-        let used: Vec<_> = used.into_iter().map(|index| (index, &uses[index as usize])).collect();
-        libraries.materials(&used)?
+        let wanted: Vec<_> = indices.into_iter().map(|index| (index, &uses[index as usize])).collect();
+        libraries.materials(&wanted)?
     } else {
         Found { left_out: libraries.missing(), ..Found::default() }
     };
-    let parts = faces.parts(|used| of_use.get(&used).copied())?;
+    let parts = faces.parts(|index| of_use.get(&index).copied())?;
 
     let mut told: Vec<_> = statements.left_out().chain(left_out).collect();
     let more = told.len().saturating_sub(MAX_TOLD);
@@ -118,7 +118,7 @@ impl Statements {
         let mut more = line.words().skip(3);
         match (more.next(), more.next(), more.next()) {
             (Some(weight), None, _) if weight.parse() != Ok(1.0_f32) => {
-                self.note("weights of vertices", line)
+                self.note("weights of vertices", line);
             }
             (_, Some(_), None) => self.note("numbers after positions", line),
             (_, _, Some(_)) => self.note("vertex colours", line),

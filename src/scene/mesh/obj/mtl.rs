@@ -54,20 +54,20 @@ impl Entry<'_> {
     /// The line and field that are not possible, without the file.
     pub(super) fn material(&self, name: String) -> Result<(Material, Vec<String>), Problem> {
         let mut notes = self.textures();
-        let mut or_default = |field: &'static str, default: f32, most: f32| match self.last(field) {
-            Some(line) => colour(line, most),
-            None => {
-                notes.push(format!("no {field}, {default} is taken"));
-                Ok(Vec3::splat(default))
+        let mut reflectance = |field: &'static str, default: f32| {
+            if let Some(line) = self.last(field) {
+                return colour(line, 1.0);
             }
+            notes.push(format!("no {field}, {default} is taken"));
+            Ok(Vec3::splat(default))
         };
         let model = self.number("illum", 0.0, 10.0)?.unwrap_or(2.0);
         let scattering = if [4.0, 6.0, 7.0, 9.0].contains(&model) {
             Scattering::Dielectric { index: self.number("Ni", 0.1, 10.0)?.unwrap_or(DEFAULT_INDEX) }
         } else if [3.0, 5.0, 8.0].contains(&model) {
-            Scattering::Mirror(or_default("Ks", DEFAULT_SPECULAR, 1.0)?)
+            Scattering::Mirror(reflectance("Ks", DEFAULT_SPECULAR)?)
         } else {
-            Scattering::Lambert(or_default("Kd", DEFAULT_DIFFUSE, 1.0)?)
+            Scattering::Lambert(reflectance("Kd", DEFAULT_DIFFUSE)?)
         };
         let emission = self.last("Ke").map_or(Ok(Vec3::ZERO), |line| colour(line, f32::MAX))?;
         if matches!(scattering, Scattering::Dielectric { .. }) {
@@ -143,7 +143,7 @@ fn colour(line: &Line<'_>, most: f32) -> Result<Vec3, Problem> {
             .filter(|colour| (0.0..=most).contains(&colour.min_element()) && colour.max_element() <= most)
         {
             Some(colour) => Ok(colour),
-            None if most == 1.0 => refuse("the reflectance is not possible", "it goes from 0 to 1"),
+            None if most <= 1.0 => refuse("the reflectance is not possible", "it goes from 0 to 1"),
             None => refuse("the emission is not possible", "it starts at 0"),
         },
     }
