@@ -92,3 +92,25 @@ fn nothing_is_missed_beside_what_is_far_or_large() {
     }
     assert!(met > 15_000, "{met}");
 }
+
+/// Copies of a triangle, as some exporters stack them, and triangles whose boxes lie one in the other.
+#[test]
+fn many_triangles_at_one_place_take_neither_long_nor_the_stack() {
+    use std::fmt::Write as _;
+    let mut same = "v 0 0 0\nv 1 0 0\nv 1 1 0\n".to_owned();
+    same.push_str(&"f 1 2 3\n".repeat(60_000));
+    let mut nested = "v 0 0 0\n".to_owned();
+    for step in 1..3000 {
+        writeln!(nested, "v {step} {} 0", step * step).unwrap();
+    }
+    for step in 1..2999 {
+        writeln!(nested, "f 1 {} {}", step + 1, step + 2).unwrap();
+    }
+    for mesh in [same, nested] {
+        let text = format!("{}[surfaces.mesh]\nmaterial = \"white\"\nmesh = {{ file = \"a.obj\" }}\n", crate::BARE);
+        let scene = crate::load_with(&text, &[("a.obj", mesh.as_bytes())]).unwrap();
+        let ray = Ray { origin: DVec3::new(0.9, 0.4, -5.0), direction: DVec3::Z };
+        let expected = by_trying_all(&scene, &ray);
+        assert_eq!(scene.cast(&ray).map(|hit| hit.distance), expected.map(|(_, distance)| distance));
+    }
+}
