@@ -1,15 +1,16 @@
 //! OSMesa, which systems with Mesa 25.1 or newer do not offer: what only it can show is counted as absent there, by name.
 
+use std::collections::BTreeSet;
 use std::io::{self, Write as _};
 use std::panic::Location;
 use std::process::Command;
-use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::{Mutex, PoisonError};
 use std::thread;
 
 use varikernel::context::{self, DeviceChoice};
 
-/// How many tests found it absent in this run.
-static ABSENT: AtomicU32 = AtomicU32::new(0);
+/// The tests that found it absent in this run.
+static ABSENT: Mutex<BTreeSet<String>> = Mutex::new(BTreeSet::new());
 
 /// Whether OSMesa is here. Where it can't be had, the test that asks says so by name, past the harness, which keeps what tests
 /// print; where its package is offered (`.ci/install-gl` installs it), the test fails.
@@ -21,12 +22,15 @@ pub(crate) fn osmesa_is_here() -> bool {
         return true;
     }
     assert!(!is_offered(), "libosmesa6 is offered here and not installed: run .ci/install-gl");
-    let count = ABSENT.fetch_add(1, Ordering::Relaxed) + 1;
     // With one thread for all tests, it has no test's name.
     let thread = thread::current();
     let name = thread.name().filter(|name| *name != "main");
     let name = name.map_or_else(|| Location::caller().to_string(), str::to_owned);
-    writeln!(io::stderr(), "absent ({count}): {name} on OSMesa: libosmesa6 is not offered here").unwrap();
+    let mut absent = ABSENT.lock().unwrap_or_else(PoisonError::into_inner);
+    if absent.insert(name.clone()) {
+        let count = absent.len();
+        writeln!(io::stderr(), "absent ({count}): {name} on OSMesa: libosmesa6 is not offered here").unwrap();
+    }
     false
 }
 
