@@ -12,14 +12,14 @@ use anyhow::{Context as _, Result, bail};
 use clap::ValueEnum as _;
 use glam::UVec2;
 use indicatif::{ProgressBar, ProgressStyle};
-use varikernel::context::{self, DeviceChoice};
+use varikernel::context::DeviceChoice;
 use varikernel::image::{ReadOptions, check_writable, read_counts};
 use varikernel::measure::bench::{self, BenchSettings, FastSuite, MapSource, Progress, Protocol, Report};
 use varikernel::measure::rivals::Rival;
 use varikernel::settings::{Edges, MAX_RADIUS_LIMIT, Method, Order, SatBuild, SatSamples, Storage};
 use varikernel::synth::Kind;
 
-use super::Outcome;
+use super::{Outcome, device};
 
 /// Time the methods, check their answers, and rank them.
 ///
@@ -176,7 +176,7 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     }
     let earlier = args.resume.as_deref().map(Report::load).transpose()?;
     let settings = settings(args);
-    let gl = context::open(&args.device)?;
+    let gl = device::open(&args.device)?;
     let maps = match &settings.suite {
         Some(suite) => suite.maps(),
         None => maps(args, gl.info().max_texture_size)?,

@@ -8,7 +8,6 @@ use std::path::PathBuf;
 
 use anyhow::{Context as _, Result, bail};
 use serde::Serialize;
-use varikernel::context;
 use varikernel::image::{
     Picture, Tile, check_writable, contact_sheet, picture_of, write_atomically, write_colours,
 };
@@ -22,7 +21,7 @@ use varikernel::{Gl, Image};
 use self::regions::{RegionErrors, Regions};
 use super::photons::load;
 use super::render::{Bar, Source, in_words_of_options};
-use super::{Outcome, output};
+use super::{Outcome, device, output};
 
 /// Fixed radii that are tried for the best one.
 const RADII: [u32; 12] = [1, 2, 3, 4, 5, 6, 8, 10, 12, 16, 24, 32];
@@ -109,7 +108,7 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     let (settings, trace) = (source.picture(), source.trace());
     settings.validate().and_then(|()| trace.validate()).map_err(in_words_of_options)?;
     let scene = load(&source.scene)?;
-    let gl = context::open(&source.device)?;
+    let gl = device::open(&source.device)?;
 
     let bar = Bar::new();
     let halves = references(args, &gl, &scene, &bar).map_err(in_words_of_options)?;

@@ -5,7 +5,7 @@ mod report;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Result, anyhow, bail};
-use varikernel::context::{self, DeviceChoice};
+use varikernel::context::DeviceChoice;
 use varikernel::gl::{self, DeviceInfo};
 use varikernel::image::{Attribute, Format, Picture, ReadOptions, read_counts, write_counts, write_picture};
 use varikernel::measure::{Difference, RadiusSummary, total_photons};
@@ -16,7 +16,7 @@ use varikernel::{
 };
 
 use super::method_options::MethodOptions;
-use super::{Outcome, output};
+use super::{Outcome, device, output};
 use report::{MapReport, Report, Timing};
 
 /// Find, for each pixel, the smallest box that holds at least n photons.
@@ -79,7 +79,7 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     let options = ReadOptions { channel: args.channel.as_deref(), ..ReadOptions::default() };
     let counts = read_counts(&args.map, &options)?;
     tracing::info!(map = %args.map.display(), size = %counts.size(), "read");
-    let gl = context::open(&args.device)?;
+    let gl = device::open(&args.device)?;
     tracing::info!(renderer = gl.info().renderer, "opened");
     check_fits(args, &counts, gl.info())?;
 

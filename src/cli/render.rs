@@ -10,7 +10,6 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use anyhow::{Result, bail};
-use varikernel::context;
 use varikernel::image::{Format, check_writable};
 use varikernel::render::{Progress, Renderer};
 use varikernel::settings::{DirectLight, Estimate, FirstBounce, PictureSettings, RadiusChoice};
@@ -21,7 +20,7 @@ pub(super) use source::{Source, in_words_of_options};
 use self::files::{attributes, write};
 use self::report::Report;
 use super::photons::load;
-use super::{Outcome, output};
+use super::{Outcome, device, output};
 
 /// Render a scene by photons whose kernels fit their density.
 ///
@@ -92,7 +91,7 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     };
     settings.validate().and_then(|()| trace.validate()).map_err(in_words_of_options)?;
     let scene = load(&args.source.scene)?;
-    let gl = context::open(&args.source.device)?;
+    let gl = device::open(&args.source.device)?;
 
     if let Some(seeds) = args.reference {
         return reference::render(args, &gl, &scene, &settings, seeds);

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context as _, Result, bail};
 use indicatif::{ProgressBar, ProgressStyle};
-use varikernel::context::{self, DeviceChoice};
+use varikernel::context::DeviceChoice;
 use varikernel::gl::Gl;
 use varikernel::image::{check_writable, write_atomically};
 use varikernel::measure;
@@ -14,7 +14,7 @@ use varikernel::measure::report::Report;
 use varikernel::measure::reproduce::{self, RunFile};
 use varikernel::measure::thesis::claims::{self, Group, Judged};
 
-use super::{Outcome, output, real_map};
+use super::{Outcome, device, output, real_map};
 
 /// Reproduce the thesis: its tables, figures and claims, timed and judged on this machine.
 ///
@@ -59,7 +59,7 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     let run_json = args.output.join("run.json");
     check_writable(&run_json)?;
     let earlier = if args.resume { RunFile::load(&run_json)? } else { RunFile::default() };
-    let gl = context::open(&args.device)?;
+    let gl = device::open(&args.device)?;
     let cornell = real_map::read()?;
     let real = (&cornell, real_map::NAME);
 

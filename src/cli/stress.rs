@@ -8,12 +8,12 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context as _, Result};
-use varikernel::context::{self, DeviceChoice};
+use varikernel::context::DeviceChoice;
 use varikernel::image::check_writable;
 use varikernel::measure::stress::{self, Extent, Report, StressSettings, Verdict};
 
 use super::share_bar::ShareBar;
-use super::{Outcome, output};
+use super::{Outcome, device, output};
 
 /// How often a renderer computes the same maps, to see that it always gives the same bits; and in a quick run.
 const TIMES: [u32; 2] = [100, 20];
@@ -71,7 +71,7 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     check_writable(&csv)?;
     let save = |report: &Report| report.save_csv(&csv).and_then(|()| report.save_json(&json));
 
-    let gl = context::open(&args.device)?;
+    let gl = device::open(&args.device)?;
     let extent = match (args.quick, args.full) {
         (true, _) => Extent::Quick,
         (_, true) => Extent::Full,

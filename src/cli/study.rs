@@ -6,12 +6,12 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context as _, Result};
-use varikernel::context::{self, DeviceChoice};
+use varikernel::context::DeviceChoice;
 use varikernel::image::{check_writable, write_atomically};
 use varikernel::measure::study::{self, Study, StudySettings};
 
 use super::share_bar::ShareBar;
-use super::{Outcome, output, real_map};
+use super::{Outcome, device, output, real_map};
 
 /// What was found so far is saved as often as this.
 const SAVE_EVERY: Duration = Duration::from_secs(10);
@@ -75,7 +75,7 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     fs::create_dir_all(&args.output)
         .with_context(|| format!("can't make the folder {}", args.output.display()))?;
     files.check()?;
-    let gl = context::open(&args.device)?;
+    let gl = device::open(&args.device)?;
     if let Some((earlier, path)) = &earlier {
         earlier.check_resumable(path, &Study::begin(&gl, &settings))?;
     }

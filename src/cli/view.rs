@@ -29,10 +29,10 @@ use varikernel::glam::UVec2;
 use varikernel::image::{Format, check_writable};
 use varikernel::settings::{Edges, Kernel, Method, Order, RadiusChoice};
 
-use super::Outcome;
 use super::photons::parse_count;
 use super::render::parse_radius;
 use super::synth::parse_size;
+use super::{Outcome, device};
 use app::{App, Wishes};
 use choices::Choices;
 use state::Beside;
@@ -138,6 +138,7 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
         check_source(Path::new(&choices.source))?;
     }
     let headless = "a window needs a display; `varikernel render` and `varikernel radius` make the same files without one";
+    device::check_for_crashes()?;
     let event_loop = window::event_loop().context(headless)?;
     let wishes = Wishes {
         choices,

@@ -8,6 +8,8 @@ mod devices;
 mod exact;
 mod files;
 mod glsl;
+#[path = "../common/osmesa.rs"]
+mod osmesa;
 mod outputs;
 mod photons;
 mod render;

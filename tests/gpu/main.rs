@@ -1,4 +1,4 @@
-//! The library on real contexts: EGL and OSMesa. A missing context fails the tests with the reason.
+//! The library on real contexts: EGL, and OSMesa where that can be had. A missing context fails the tests with the reason.
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
@@ -29,6 +29,8 @@ mod live;
 mod lost;
 mod memory;
 mod objects;
+#[path = "../common/osmesa.rs"]
+mod osmesa;
 #[cfg(feature = "render")]
 mod picture;
 mod radius;
