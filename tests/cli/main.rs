@@ -8,9 +8,13 @@ mod devices;
 mod exact;
 mod files;
 mod glsl;
+mod interrupt;
+mod masks;
 mod outputs;
+mod owners;
 mod photons;
 mod render;
+mod saving;
 mod stress;
 mod synth;
 
