@@ -198,13 +198,16 @@ fn in_words_of_options(error: Error, map: &Path) -> anyhow::Error {
     }
 }
 
-/// Refuses outputs that can't be written, and ones that would replace the map or each other.
+/// Refuses outputs that can't be written, and ones that would replace the map, the mask or each other.
 fn check_files(args: &Args) -> Result<()> {
     for path in [Some(&args.output), args.limited_mask.as_ref()].into_iter().flatten() {
         Format::of(path)?;
     }
     let outputs =
         [("--output", Some(args.output.as_path())), ("--limited-mask", args.limited_mask.as_deref())];
+    if let Some(mask) = &args.mask {
+        output::check_files(("the mask", mask), &outputs)?;
+    }
     output::check_files(("the map", &args.map), &outputs)
 }
 

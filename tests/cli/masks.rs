@@ -50,6 +50,10 @@ fn a_mask_is_refused_in_words_about_masks() {
         "radius map.npy -o out.npy --mask small.png",
         &["small.png: the mask is 3 x 3 pixels, and the map 9 x 5", "help: give one of the map's size"],
     );
+    place.refuses(
+        "radius map.npy -o small.png --mask small.png",
+        &["small.png: --output is the same file as the mask", "help: choose another name"],
+    );
     place.put("broken.png", &place.bytes("small.png")[..60]);
     place.refuses("radius map.npy -o out.npy --mask broken.png", &["broken.png", "truncated"]);
 }

@@ -129,8 +129,8 @@ pub(in crate::image) fn read_rgb(
         let channels = &header.channels.list;
         ["R", "G", "B"].iter().map(|&name| channels.iter().position(|one| one.name == *name)).collect()
     };
-    let chosen = reader.headers().iter().enumerate();
-    let chosen = chosen.filter_map(|(layer, header)| Some(Chosen { layer, channels: rgb(header)? })).next();
+    let mut layers = reader.headers().iter().enumerate();
+    let chosen = layers.find_map(|(layer, header)| Some(Chosen { layer, channels: rgb(header)? }));
     let chosen = chosen.ok_or_else(|| {
         let names: Vec<_> = names(reader.headers()).into_iter().map(|(_, full, _)| full).collect();
         let problem = format!("no channels R, G and B, but {}", names.join(", "));
