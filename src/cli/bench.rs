@@ -199,11 +199,11 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
         Ok(())
     })?;
     bar.finish_and_clear();
-    let saved = saver.save(&report);
+    let last_save = saver.save(&report);
     table::print_report(&report, json.map(PathBuf::as_path))?;
     targets::print(&report.targets)?;
     let resume = if saver.is_saved { RESUME } else { Resume::Anew };
-    saved.map_err(|error| how_to_go_on(error, &resume))?;
+    last_save.map_err(|error| how_to_go_on(error, &resume))?;
     if !report.runs.iter().any(|run| run.case.method.is_some()) {
         bail!("no method was timed; the reasons are above");
     }

@@ -9,7 +9,7 @@ use crate::Workplace;
 const SIZE: UVec2 = UVec2::new(9, 5);
 
 fn is_needed(x: u32, y: u32) -> bool {
-    x > 2 && (x + y) % 3 != 0
+    x > 2 && !(x + y).is_multiple_of(3)
 }
 
 /// A map, and the radii that it has where they are needed.

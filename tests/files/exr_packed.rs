@@ -19,7 +19,7 @@ const SIZE: UVec2 = UVec2::new(67, 41);
 
 /// Counts in all 32 bits, and many zeros, so that packing pays.
 fn counts() -> Image<u32> {
-    Image::from_fn(SIZE, |x, y| if (x + y) % 5 == 0 { (x * 977 + y * 65_537) << (x % 8) } else { 0 })
+    Image::from_fn(SIZE, |x, y| if (x + y).is_multiple_of(5) { (x * 977 + y * 65_537) << (x % 8) } else { 0 })
 }
 
 fn encoded(compression: Compression, blocks: Blocks, channels: Vec<(&str, FlatSamples)>) -> Vec<u8> {

@@ -95,11 +95,11 @@ fn headers_that_claim_too_much() {
 fn what_follows_the_end_is_not_read() {
     let whole = png((2, 1), 8, GREY, &[0, 3, 255], &[]);
     let two = Image::from_values(UVec2::new(2, 1), vec![3, 255]);
-    for tail in [b"\0".as_slice(), b"more", &[0xff; 70_000], &chunk(*b"IDAT", &[0; 40])] {
+    for tail in [b"\0".as_slice(), b"more", "long".repeat(20_000).as_bytes(), &chunk(*b"IDAT", &[0; 40])] {
         assert_eq!(read("a.png", &[&whole, tail].concat()).unwrap(), two);
     }
     // A chunk that no reader knows may come before the end, and be of any length.
-    let note = chunk(*b"teXt", &[7; 20_000]);
+    let note = chunk(*b"teXt", "long".repeat(5000).as_bytes());
     assert_eq!(read("a.png", &png((2, 1), 8, GREY, &[0, 3, 255], &note)).unwrap(), two);
 }
 

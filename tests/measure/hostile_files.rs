@@ -43,9 +43,15 @@ fn spoil(value: &mut Value, random: &mut Random, rarity: usize) {
             if random.below(20 * rarity) == 0 {
                 items.truncate(random.below(2));
             }
-            items.iter_mut().for_each(|item| spoil(item, random, rarity));
+            for item in items {
+                spoil(item, random, rarity);
+            }
         }
-        Value::Object(fields) => fields.values_mut().for_each(|field| spoil(field, random, rarity)),
+        Value::Object(fields) => {
+            for field in fields.values_mut() {
+                spoil(field, random, rarity);
+            }
+        }
         _ => {}
     }
 }
@@ -111,7 +117,9 @@ fn files_cut_or_of_another_kind() {
             assert!(message.contains("a.json") && message.contains("help: "), "{message}");
         }
     };
-    for bytes in [b"".as_slice(), b"{", b"{}", b"[]", b"null", b"\xff\xfe", b"1e999", &[b'['; 100_000]] {
+    for bytes in
+        [b"".as_slice(), b"{", b"{}", b"[]", b"null", b"\xff\xfe", b"1e999", "[".repeat(100_000).as_bytes()]
+    {
         refused(bytes);
     }
     let whole = std::fs::read(committed("study/study.json")).unwrap();
