@@ -19,6 +19,7 @@ use varikernel::settings::{MAX_PICTURE_RADIUS, PictureSettings, RadiusChoice};
 use varikernel::{Gl, Image};
 
 use self::regions::{RegionErrors, Regions};
+use super::numbers::whole_checked_later;
 use super::photons::load;
 use super::render::{Bar, Source, in_words_of_options};
 use super::{Outcome, device, output};
@@ -44,7 +45,8 @@ pub(crate) struct Args {
     output: PathBuf,
 
     /// Seeds that the reference is averaged over.
-    #[arg(long, default_value_t = 32, value_name = "NUMBER")]
+    #[arg(long, default_value_t = 32, value_name = "NUMBER", allow_negative_numbers = true)]
+    #[arg(value_parser = whole_checked_later(2..=u32::MAX))]
     reference_seeds: u32,
 
     /// Print one JSON object instead of a table.

@@ -8,11 +8,15 @@ mod devices;
 mod exact;
 mod files;
 mod glsl;
+mod interrupt;
+mod masks;
 #[path = "../common/osmesa.rs"]
 mod osmesa;
 mod outputs;
+mod owners;
 mod photons;
 mod render;
+mod saving;
 mod stress;
 mod synth;
 
