@@ -71,6 +71,10 @@ pub(super) fn follow(
                 specular += 1;
                 (mirrored(&ray, &hit, side), facing)
             }
+            Scattering::ThinDielectric { transmittance, .. } => {
+                (power, specular) = (power * transmittance, specular + 1);
+                (ray.direction, -facing)
+            }
             Scattering::Dielectric { index } => {
                 specular += 1;
                 let ratio = if side > 0.0 { 1.0 / f64::from(index) } else { f64::from(index) };

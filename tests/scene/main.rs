@@ -6,6 +6,7 @@
 
 mod cast;
 mod files;
+mod gltf;
 mod meshes;
 mod optics;
 mod physics;
