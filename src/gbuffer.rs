@@ -86,7 +86,9 @@ fn appearance(scene: &Scene, surface: u32, material: u32) -> (f32, Vec3) {
     let number = (surface + 1) as f32;
     match material.scattering {
         Scattering::Lambert(reflectance) => (number, reflectance),
-        Scattering::Mirror(_) | Scattering::Dielectric { .. } | Scattering::ThinDielectric { .. } => (-number, Vec3::ZERO),
+        Scattering::Mirror(_) | Scattering::Dielectric { .. } | Scattering::ThinDielectric { .. } => {
+            (-number, Vec3::ZERO)
+        }
     }
 }
 

@@ -97,7 +97,9 @@ impl Sight {
                 if depth == 0 { self.straight.push(place) } else { self.bent.push(place) }
             }
             Scattering::Mirror(reflectance) => go(mirrored(ray, &hit, side), facing, share * reflectance),
-            Scattering::ThinDielectric { transmittance, .. } => go(ray.direction, -facing, share * transmittance),
+            Scattering::ThinDielectric { transmittance, .. } => {
+                go(ray.direction, -facing, share * transmittance)
+            }
             Scattering::Dielectric { index } => {
                 let ratio = if side > 0.0 { 1.0 / f64::from(index) } else { f64::from(index) };
                 let smooth = side * hit.smooth_normal;

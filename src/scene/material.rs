@@ -71,7 +71,9 @@ impl Material {
     pub fn albedo(&self) -> Vec3 {
         match self.scattering {
             Scattering::Lambert(reflectance) => reflectance,
-            Scattering::Mirror(_) | Scattering::Dielectric { .. } | Scattering::ThinDielectric { .. } => Vec3::ZERO,
+            Scattering::Mirror(_) | Scattering::Dielectric { .. } | Scattering::ThinDielectric { .. } => {
+                Vec3::ZERO
+            }
         }
     }
 }

@@ -92,7 +92,11 @@ impl Wrap {
             }
             Self::Clamp => at,
         };
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 0 to the last texel")]
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "from 0 to the last texel"
+        )]
         let index = inside.clamp(0.0, last) as u32;
         index
     }

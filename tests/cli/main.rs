@@ -8,6 +8,7 @@ mod devices;
 mod exact;
 mod files;
 mod glsl;
+mod gltf;
 mod outputs;
 mod photons;
 mod render;

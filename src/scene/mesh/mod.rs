@@ -190,7 +190,9 @@ fn checked(material: Material) -> Result<Material, Problem> {
             if !(0.1..=10.0).contains(&index) || !share(transmittance) =>
         {
             Err((
-                format!("the index {index} or transmittance {transmittance} of material \"{name}\" is not possible"),
+                format!(
+                    "the index {index} or transmittance {transmittance} of material \"{name}\" is not possible"
+                ),
                 "the index goes from 0.1 to 10, the transmittance from 0 to 1",
             ))
         }

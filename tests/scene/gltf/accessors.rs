@@ -67,7 +67,9 @@ fn interleaved_numbers_stand_a_stride_apart() {
     made.json["accessors"][0] =
         json!({"bufferView": view, "byteOffset": 4, "componentType": F32, "count": 4, "type": "VEC3"});
     let list = made.json["accessors"].as_array_mut().unwrap();
-    list.push(json!({"bufferView": view, "byteOffset": 16, "componentType": F32, "count": 4, "type": "VEC2"}));
+    list.push(
+        json!({"bufferView": view, "byteOffset": 16, "componentType": F32, "count": 4, "type": "VEC2"}),
+    );
     made.primitive()["attributes"]["TEXCOORD_0"] = json!(2);
     made.json["textures"] = json!([{}]);
     made.material(json!({"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}));
@@ -88,8 +90,7 @@ fn quantised_numbers_are_themselves_or_shares() {
         let mut made = Made::square();
         let view = made.view(&bytes);
         made.json["bufferViews"][view]["byteStride"] = json!(4);
-        made.json["accessors"][0] =
-            json!({"bufferView": view, "componentType": 5120, "count": 4, "type": "VEC3", "normalized": normalized});
+        made.json["accessors"][0] = json!({"bufferView": view, "componentType": 5120, "count": 4, "type": "VEC3", "normalized": normalized});
         made.json["nodes"][0]["scale"] = json!([scale, scale, scale]);
         made.json["extensionsRequired"] = json!(["KHR_mesh_quantization"]);
         let found = corners(&made.load().unwrap());
@@ -124,11 +125,11 @@ fn vertex_colours_come_in_every_type() {
 
 #[test]
 fn strips_and_fans_become_triangles_that_face_the_same_way() {
-    let [a, b, c, d] = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[x, y]| Vec3::new(x, y, 0.0));
-    for (mode, indices, expected) in [
-        (5, [0, 1, 3, 2], [[a, b, d], [b, c, d]]),
-        (6, [0, 1, 2, 3], [[b, c, a], [c, d, a]]),
-    ] {
+    let [a, b, c, d] =
+        [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[x, y]| Vec3::new(x, y, 0.0));
+    for (mode, indices, expected) in
+        [(5, [0, 1, 3, 2], [[a, b, d], [b, c, d]]), (6, [0, 1, 2, 3], [[b, c, a], [c, d, a]])]
+    {
         let mut made = Made::square();
         let indices = made.shorts(&indices);
         made.primitive()["indices"] = json!(indices);
@@ -137,7 +138,10 @@ fn strips_and_fans_become_triangles_that_face_the_same_way() {
         let found = corners(&scene);
         for (found, expected) in found.iter().zip(expected) {
             // The same corners in the same turn, whichever comes first.
-            assert!((0..3).any(|turn| (0..3).all(|at| found[(at + turn) % 3] == expected[at])), "{mode}: {found:?}");
+            assert!(
+                (0..3).any(|turn| (0..3).all(|at| found[(at + turn) % 3] == expected[at])),
+                "{mode}: {found:?}"
+            );
         }
         assert_eq!(found.len(), 2);
         assert!(vertices(&scene).iter().all(|vertex| vertex.normal == Vec3::Z));

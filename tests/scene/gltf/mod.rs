@@ -177,6 +177,7 @@ fn material(scene: &Scene) -> &Material {
 
 /// The square's triangles, each point moved.
 fn moved(by: impl Fn(Vec3) -> Vec3) -> Vec<[Vec3; 3]> {
-    let [a, b, c, d] = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[x, y]| by(Vec3::new(x, y, 0.0)));
+    let [a, b, c, d] =
+        [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[x, y]| by(Vec3::new(x, y, 0.0)));
     vec![[a, b, c], [a, c, d]]
 }

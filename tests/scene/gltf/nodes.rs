@@ -34,8 +34,7 @@ fn transforms_add_up_from_the_root_to_the_mesh() {
 fn a_node_of_scale_zero_hides_its_mesh_and_no_other() {
     let mut made = with_normals();
     made.json["scenes"][0]["nodes"] = json!([0, 1, 2]);
-    made.json["nodes"] =
-        json!([{"mesh": 0}, {"mesh": 0, "scale": [0, 0, 0]}, {"mesh": 0, "scale": [1, 0, 0], "translation": [3, 0, 0]}]);
+    made.json["nodes"] = json!([{"mesh": 0}, {"mesh": 0, "scale": [0, 0, 0]}, {"mesh": 0, "scale": [1, 0, 0], "translation": [3, 0, 0]}]);
     assert_eq!(corners(&made.load().unwrap()), moved(|at| at));
     made.json["scenes"][0]["nodes"] = json!([1]);
     made.refuses(&["no triangle"]);

@@ -34,8 +34,10 @@ impl Document<'_> {
         let accessor = self.find(index, "accessor", place)?;
         let shares = whole == Whole::Shares || accessor.normalized;
         let items = self.items(accessor, place, |bytes, kind| float(bytes, kind, shares))?;
-        if let Some(number) = items.iter().position(|item: &[f32; N]| !item.iter().all(|one| one.is_finite())) {
-            let reason = format!("item {} is {:?}, and every number must be finite", number + 1, items[number]);
+        if let Some(number) = items.iter().position(|item: &[f32; N]| !item.iter().all(|one| one.is_finite()))
+        {
+            let reason =
+                format!("item {} is {:?}, and every number must be finite", number + 1, items[number]);
             return Err(problem(place, reason, REMEDY));
         }
         Ok(items)
@@ -163,7 +165,9 @@ impl<'b> Iterator for Strided<'b> {
 }
 
 fn past(place: &str, count: u64, start: u64, available: usize) -> Problem {
-    let reason = format!("{count} items from byte {start} on are past the end of its buffer view, which has {available}");
+    let reason = format!(
+        "{count} items from byte {start} on are past the end of its buffer view, which has {available}"
+    );
     problem(place, reason, "copy or export the files of the mesh again")
 }
 
@@ -176,7 +180,10 @@ fn float(bytes: &[u8], kind: ComponentType, shares: bool) -> f32 {
         (ComponentType::I16, &[a, b]) => share(f32::from(i16::from_le_bytes([a, b])), 32767.0),
         (ComponentType::U16, &[a, b]) => share(f32::from(u16::from_le_bytes([a, b])), 65535.0),
         (ComponentType::F32, &[a, b, c, d]) => f32::from_le_bytes([a, b, c, d]),
-        #[expect(clippy::cast_precision_loss, reason = "no such numbers are allowed where a fraction is asked for")]
+        #[expect(
+            clippy::cast_precision_loss,
+            reason = "no such numbers are allowed where a fraction is asked for"
+        )]
         _ => integer(bytes) as f32,
     }
 }

@@ -14,8 +14,10 @@ use super::{Problem, problem};
 const REMEDY: &str = "export the mesh again";
 
 const MORE_COLOURS: Kind = ("second set of vertex colours", "second sets of vertex colours");
-const BEYOND: Kind =
-    ("primitive whose vertex colours leave 0 to 1 (cut there)", "primitives whose vertex colours leave 0 to 1 (cut there)");
+const BEYOND: Kind = (
+    "primitive whose vertex colours leave 0 to 1 (cut there)",
+    "primitives whose vertex colours leave 0 to 1 (cut there)",
+);
 
 /// A primitive, and where it stands in the file.
 pub(super) struct Attributes<'a> {
@@ -120,11 +122,15 @@ impl Attributes<'_> {
     pub(super) fn triangles(&self, mode: Faces, vertices: usize) -> Result<Vec<[u32; 3]>, Problem> {
         let place = format!("{}.indices", self.place);
         let indices: Vec<u32> = match self.primitive.indices {
-            Some(accessor) => self.document.integers::<1>(accessor, &place)?.into_iter().map(|[one]| one).collect(),
-            None => (0..u32::try_from(vertices).map_err(|_| problem(&place, "too many vertices", REMEDY))?).collect(),
+            Some(accessor) => {
+                self.document.integers::<1>(accessor, &place)?.into_iter().map(|[one]| one).collect()
+            }
+            None => (0..u32::try_from(vertices).map_err(|_| problem(&place, "too many vertices", REMEDY))?)
+                .collect(),
         };
         if let Some(number) = indices.iter().position(|&index| index as usize >= vertices) {
-            let reason = format!("item {} is {}, and there are {vertices} vertices", number + 1, indices[number]);
+            let reason =
+                format!("item {} is {}, and there are {vertices} vertices", number + 1, indices[number]);
             return Err(problem(place, reason, REMEDY));
         }
         let corners = indices.windows(3).enumerate();

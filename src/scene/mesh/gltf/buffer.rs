@@ -20,12 +20,17 @@ impl Document<'_> {
     ///
     /// # Errors
     /// If the view reaches past its buffer, or the buffer can't be read.
-    pub(super) fn view(&self, index: Index<View>, place: impl Display) -> Result<(&[u8], Option<usize>), Problem> {
+    pub(super) fn view(
+        &self,
+        index: Index<View>,
+        place: impl Display,
+    ) -> Result<(&[u8], Option<usize>), Problem> {
         let view = self.find(index, "buffer view", place)?;
         let place = format!("bufferViews[{index}]");
         let buffer = self.find(view.buffer, "buffer", format!("{place}.buffer"))?;
         let others = view.extensions.as_ref().map(|extensions| &extensions.others);
-        let compression = COMPRESSIONS.iter().find(|name| others.is_some_and(|others| others.contains_key(**name)));
+        let compression =
+            COMPRESSIONS.iter().find(|name| others.is_some_and(|others| others.contains_key(**name)));
         if let (Some(name), None) = (compression, &buffer.uri) {
             // Where the buffer is a mere placeholder, the bytes are in another one, compressed.
             let is_blob = view.buffer.value() == 0 && self.blob.is_some();
@@ -89,6 +94,7 @@ fn range(start: u64, length: u64) -> Option<std::ops::Range<usize>> {
 }
 
 fn past(place: &str, start: u64, length: u64, available: usize) -> Problem {
-    let reason = format!("{length} bytes from byte {start} on are past the end of its buffer, which has {available}");
+    let reason =
+        format!("{length} bytes from byte {start} on are past the end of its buffer, which has {available}");
     problem(place, reason, "copy or export the files of the mesh again")
 }

@@ -46,8 +46,7 @@ fn chunk(bytes: &[u8]) -> Result<([u8; 4], &[u8], &[u8]), Problem> {
         return Err(cut("the header of a chunk", CHUNK_HEADER, bytes.len()));
     };
     let rest = &bytes[CHUNK_HEADER..];
-    let (content, after) =
-        rest.split_at_checked(length).ok_or_else(|| cut("a chunk", length, rest.len()))?;
+    let (content, after) = rest.split_at_checked(length).ok_or_else(|| cut("a chunk", length, rest.len()))?;
     Ok(([kind[0], kind[1], kind[2], kind[3]], content, after))
 }
 

@@ -79,9 +79,9 @@ impl<'a> Document<'a> {
     where
         Root: Get<T>,
     {
-        self.root.get(index).ok_or_else(|| {
-            problem(place, format!("there is no {what} {index}"), "export the mesh again")
-        })
+        self.root
+            .get(index)
+            .ok_or_else(|| problem(place, format!("there is no {what} {index}"), "export the mesh again"))
     }
 }
 
@@ -89,7 +89,7 @@ impl<'a> Document<'a> {
 fn parse(json: &[u8]) -> Result<(Root, Census), Problem> {
     let refused = |place: String, error: &gltf_json::Error| {
         let place = if place == "." { String::new() } else { format!("{place}: ") };
-        (format!("not a glTF file: {place}{error}"), REMEDY)
+        problem("not a glTF file", format!("{place}{error}"), REMEDY)
     };
     let mut value: Value =
         gltf_json::deserialize::from_slice(json).map_err(|error| refused(".".to_owned(), &error))?;

@@ -97,9 +97,15 @@ pub(super) fn compressed(place: &str, name: &str) -> Problem {
 ///
 /// # Errors
 /// If they are not.
-pub(super) fn uncompressed(document: &Document<'_>, primitive: &Primitive, place: &str) -> Result<(), Problem> {
+pub(super) fn uncompressed(
+    document: &Document<'_>,
+    primitive: &Primitive,
+    place: &str,
+) -> Result<(), Problem> {
     let others = primitive.extensions.as_ref().map(|extensions| &extensions.others);
-    let Some(name) = COMPRESSIONS.iter().find(|name| others.is_some_and(|others| others.contains_key(**name))) else {
+    let Some(name) =
+        COMPRESSIONS.iter().find(|name| others.is_some_and(|others| others.contains_key(**name)))
+    else {
         return Ok(());
     };
     let is_empty = |index| document.root.get(index).is_some_and(|one: &Accessor| one.buffer_view.is_none());

@@ -16,14 +16,19 @@ const NAME: &str = "EXT_mesh_gpu_instancing";
 /// If the numbers can't be read, or are not as many for each part of the transforms.
 pub(super) fn places(document: &Document<'_>, node: &Node, index: usize) -> Result<Vec<DAffine3>, Problem> {
     let others = node.extensions.as_ref().map(|extensions| &extensions.others);
-    let Some(attributes) = others.and_then(|others| others.get(NAME)).and_then(|own| own.get("attributes")) else {
+    let Some(attributes) = others.and_then(|others| others.get(NAME)).and_then(|own| own.get("attributes"))
+    else {
         return Ok(vec![DAffine3::IDENTITY]);
     };
     let place = |name: &str| format!("nodes[{index}].extensions.{NAME}.attributes.{name}");
     let translations = of::<3>(document, attributes, "TRANSLATION", &place("TRANSLATION"))?;
     let rotations = of::<4>(document, attributes, "ROTATION", &place("ROTATION"))?;
     let scales = of::<3>(document, attributes, "SCALE", &place("SCALE"))?;
-    let counts = [translations.as_ref().map(Vec::len), rotations.as_ref().map(Vec::len), scales.as_ref().map(Vec::len)];
+    let counts = [
+        translations.as_ref().map(Vec::len),
+        rotations.as_ref().map(Vec::len),
+        scales.as_ref().map(Vec::len),
+    ];
     let count = counts.into_iter().flatten().next().unwrap_or(0);
     if counts.into_iter().flatten().any(|other| other != count) {
         return Err(problem(place("*"), "they have different counts", "export the mesh again"));

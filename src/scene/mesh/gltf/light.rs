@@ -36,7 +36,8 @@ pub(super) fn light(
     to_world: DAffine3,
     left_out: &mut LeftOut,
 ) -> Result<Option<Light>, Problem> {
-    let Some(own) = node.extensions.as_ref().and_then(|extensions| extensions.khr_lights_punctual.as_ref()) else {
+    let Some(own) = node.extensions.as_ref().and_then(|extensions| extensions.khr_lights_punctual.as_ref())
+    else {
         return Ok(None);
     };
     let entry = document.find(own.light, "light", "nodes: KHR_lights_punctual")?;
@@ -91,7 +92,11 @@ fn half_angle(spot: Option<&Spot>, place: &str, left_out: &mut LeftOut) -> Resul
     let Spot { inner_cone_angle: inner, outer_cone_angle: outer } = *spot.ok_or_else(missing)?;
     if !(0.0..=FRAC_PI_2 + 1e-4).contains(&outer) || outer == 0.0 || !(0.0..=outer).contains(&inner) {
         let reason = format!("its cones have the angles {inner} and {outer}");
-        return Err(problem(place, reason, "they go from 0 to a quarter turn, and the inner is the smaller one"));
+        return Err(problem(
+            place,
+            reason,
+            "they go from 0 to a quarter turn, and the inner is the smaller one",
+        ));
     }
     let [cos_inner, cos_outer] = [inner, outer].map(|angle| f64::from(angle).cos());
     if cos_inner - cos_outer <= SHARP {

@@ -13,7 +13,7 @@ use gltf_json::{Index, Material as Entry};
 use super::document::Document;
 use super::left_out::{Kind, LeftOut};
 use super::texture::Textures;
-use super::{Problem, super::checked};
+use super::{super::checked, Problem};
 use crate::scene::{Material, Scattering, Texture};
 
 const BASE_TEXTURE: Kind = (
@@ -28,12 +28,15 @@ const METAL_TEXTURE: Kind = ("metallic-roughness texture", "metallic-roughness t
 const TRANSMISSION_TEXTURE: Kind = ("transmission texture", "transmission textures");
 const MASK: Kind = ("alpha mask (drawn opaque)", "alpha masks (drawn opaque)");
 const BLEND: Kind = ("alpha blend (drawn opaque)", "alpha blends (drawn opaque)");
-const SHARE: Kind =
-    ("transmission between 0 and 1 (taken as the nearer)", "transmissions between 0 and 1 (taken as the nearer)");
+const SHARE: Kind = (
+    "transmission between 0 and 1 (taken as the nearer)",
+    "transmissions between 0 and 1 (taken as the nearer)",
+);
 const METAL_GLASS: Kind = ("metallic part of glass", "metallic parts of glass");
 const ROUGH_GLASS: Kind = ("roughness of glass", "roughnesses of glass");
 const TINT: Kind = ("colour of solid glass", "colours of solid glass");
-const BACK: Kind = ("light from the back of a double-sided surface", "lights from the backs of double-sided surfaces");
+const BACK: Kind =
+    ("light from the back of a double-sided surface", "lights from the backs of double-sided surfaces");
 
 /// What the format says of primitives without a material.
 const DEFAULT_NAME: &str = "default material";
@@ -114,7 +117,8 @@ impl<'a> Materials<'a> {
         let reflectance_texture = self.texture(base, placed[0], BASE_TEXTURE, left_out);
         let emission_texture = self.texture(emissive, placed[1], EMISSIVE_TEXTURE, left_out);
         // A texture mostly keeps a surface dark: without it the factor would make a lamp of the whole.
-        let emission = if emissive.is_some() && emission_texture.is_none() { Vec3::ZERO } else { emission(entry) };
+        let emission =
+            if emissive.is_some() && emission_texture.is_none() { Vec3::ZERO } else { emission(entry) };
         let plain = checked(Material::plain(name, scattering(entry), emission))?;
         Ok(Material { reflectance_texture, emission_texture, ..plain })
     }
@@ -186,10 +190,11 @@ fn tell(entry: &Entry, left_out: &mut LeftOut) {
     let surface = &entry.pbr_metallic_roughness;
     let extensions = entry.extensions.as_ref();
     let glass = transmission(entry) >= 0.5;
-    let transmission_texture =
-        extensions.and_then(|all| all.transmission.as_ref()).is_some_and(|own| own.transmission_texture.is_some());
+    let transmission_texture = extensions
+        .and_then(|all| all.transmission.as_ref())
+        .is_some_and(|own| own.transmission_texture.is_some());
     let attenuates = volume(entry).is_some_and(|own| {
-        own.attenuation_distance.0.is_finite() && own.attenuation_color.0 != [1.0; 3]
+        own.attenuation_distance.0.is_finite() && Vec3::from(own.attenuation_color.0) != Vec3::ONE
     });
     let tinted = surface.base_color_texture.is_some() || base_colour(entry) != Vec3::ONE;
     let translucent = surface.base_color_factor.0[3] < 1.0 || surface.base_color_texture.is_some();

@@ -42,13 +42,21 @@ impl Nodes {
         while let Some(&index) = order.get(next) {
             let above = parents[index].map_or(DAffine3::IDENTITY, |parent: usize| to_world[parent]);
             to_world[index] = above * to_parent(&nodes[index], index)?;
+            if !to_world[index].is_finite() {
+                let reason = "with those above it, its transform is past all numbers";
+                return Err(problem(format!("nodes[{index}]"), reason, "scale the nodes down"));
+            }
             order.extend(nodes[index].children.iter().flatten().map(gltf_json::Index::value));
             next += 1;
         }
         let mut placed = vec![false; nodes.len()];
         order.iter().for_each(|&index| placed[index] = true);
         if let Some(ring) = placed.iter().position(|placed| !placed) {
-            return Err(problem(format!("nodes[{ring}]"), "the node is below itself", "give each node one parent"));
+            return Err(problem(
+                format!("nodes[{ring}]"),
+                "the node is below itself",
+                "give each node one parent",
+            ));
         }
         order.truncate(roots);
         let drawn = drawn(document, order)?;
@@ -89,7 +97,8 @@ fn drawn(document: &Document<'_>, roots: Vec<usize>) -> Result<Vec<usize>, Probl
 /// What KHR_node_visibility says, of the node and all below it.
 fn is_visible(node: &Node) -> bool {
     let others = node.extensions.as_ref().map(|extensions| &extensions.others);
-    let visible = others.and_then(|others| others.get("KHR_node_visibility")).and_then(|own| own.get("visible"));
+    let visible =
+        others.and_then(|others| others.get("KHR_node_visibility")).and_then(|own| own.get("visible"));
     visible.and_then(Value::as_bool).unwrap_or(true)
 }
 

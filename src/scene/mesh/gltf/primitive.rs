@@ -12,7 +12,7 @@ use super::skin::Weights;
 use super::{Document, Part, Problem, problem};
 
 /// Bytes of memory that a primitive takes besides its numbers, as a rough bound.
-const OVERHEAD: u64 = 512;
+const OVERHEAD: u64 = 1024;
 
 const POINTS: Kind = ("primitive of points", "primitives of points");
 const LINES: Kind = ("primitive of lines", "primitives of lines");
@@ -82,10 +82,12 @@ impl Shop<'_> {
         };
         match placing {
             Placing::Node(to_world) => put(&mut part, |_| to_world),
-            Placing::Skin(joints) => match Weights::new(document, primitive, vertices, joints.len(), place)? {
-                Some(weights) => put(&mut part, |vertex| weights.at(vertex, joints)),
-                None => self.left_out.add(WITHOUT_WEIGHTS, 1),
-            },
+            Placing::Skin(joints) => {
+                match Weights::new(document, primitive, vertices, joints.len(), place)? {
+                    Some(weights) => put(&mut part, |vertex| weights.at(vertex, joints)),
+                    None => self.left_out.add(WITHOUT_WEIGHTS, 1),
+                }
+            }
         }
         Ok(Some(part))
     }

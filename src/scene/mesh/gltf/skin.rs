@@ -26,8 +26,12 @@ pub(super) fn joints(
     let place = format!("skins[{index}]");
     let from_bind = match skin.inverse_bind_matrices {
         Some(accessor) => {
-            let matrices = document.floats::<16>(accessor, Whole::AsSaid, &format!("{place}.inverseBindMatrices"))?;
-            matrices.iter().map(|one| DAffine3::from_mat4(DMat4::from_cols_array(&one.map(f64::from)))).collect()
+            let matrices =
+                document.floats::<16>(accessor, Whole::AsSaid, &format!("{place}.inverseBindMatrices"))?;
+            matrices
+                .iter()
+                .map(|one| DAffine3::from_mat4(DMat4::from_cols_array(&one.map(f64::from))))
+                .collect()
         }
         None => vec![DAffine3::IDENTITY; skin.joints.len()],
     };
@@ -70,11 +74,14 @@ impl Weights {
             let numbers = document.integers::<4>(numbers, &place("JOINTS"))?;
             let weights = document.floats::<4>(weights, Whole::Shares, &place("WEIGHTS"))?;
             if numbers.len() != vertices || weights.len() != vertices {
-                let reason = format!("there are {} of them for {vertices} vertices", numbers.len().min(weights.len()));
+                let reason =
+                    format!("there are {} of them for {vertices} vertices", numbers.len().min(weights.len()));
                 return Err(problem(place("JOINTS"), reason, REMEDY));
             }
             let mut used = numbers.iter().flatten().zip(weights.iter().flatten());
-            if let Some((joint, _)) = used.find(|&(&joint, &weight)| weight != 0.0 && joint as usize >= joints) {
+            if let Some((joint, _)) =
+                used.find(|&(&joint, &weight)| weight != 0.0 && joint as usize >= joints)
+            {
                 let reason = format!("joint {joint} is named, and the skin has {joints}");
                 return Err(problem(place("JOINTS"), reason, REMEDY));
             }
@@ -88,7 +95,9 @@ impl Weights {
         let mut sum = DMat4::ZERO;
         let mut total = 0.0;
         for (numbers, weights) in &self.sets {
-            for (&joint, &weight) in numbers[vertex].iter().zip(&weights[vertex]).filter(|(_, weight)| **weight != 0.0) {
+            for (&joint, &weight) in
+                numbers[vertex].iter().zip(&weights[vertex]).filter(|(_, weight)| **weight != 0.0)
+            {
                 sum += DMat4::from(joints[joint as usize]) * f64::from(weight);
                 total += f64::from(weight);
             }

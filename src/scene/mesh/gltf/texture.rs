@@ -22,7 +22,8 @@ const MAX_TEXELS: u64 = 1 << 28;
 const MAX_ALLOC: u64 = 1 << 30;
 
 /// Extensions that bring images in formats which are not read.
-const OTHER_FORMATS: &[&str] = &["KHR_texture_basisu", "EXT_texture_webp", "EXT_texture_avif", "MSFT_texture_dds"];
+const OTHER_FORMATS: &[&str] =
+    &["KHR_texture_basisu", "EXT_texture_webp", "EXT_texture_avif", "MSFT_texture_dds"];
 
 /// An image's index, the wrap across and down, and whether texels are blended.
 type Key = (usize, [u8; 2], bool);
@@ -56,7 +57,8 @@ impl<'a> Textures<'a> {
         let texture = root.get(index).ok_or_else(|| named("there is no such texture"))?;
         let Some(image) = root.get(texture.source) else {
             let others = texture.extensions.as_ref().map(|extensions| &extensions.others);
-            let needs = OTHER_FORMATS.iter().find(|name| others.is_some_and(|others| others.contains_key(**name)));
+            let needs =
+                OTHER_FORMATS.iter().find(|name| others.is_some_and(|others| others.contains_key(**name)));
             return Err(named(&match needs {
                 Some(name) => format!("{name} is not supported, and there is no PNG or JPEG beside it"),
                 None => "it has no image".to_owned(),
@@ -69,7 +71,10 @@ impl<'a> Textures<'a> {
             return known.clone();
         }
         let name = self.name(index);
-        let read = self.bytes(image).and_then(|bytes| self.decode(&bytes)).map_err(|reason| format!("{name}: {reason}"));
+        let read = self
+            .bytes(image)
+            .and_then(|bytes| self.decode(&bytes))
+            .map_err(|reason| format!("{name}: {reason}"));
         let read = read.map(|(size, texels)| Arc::new(Texture::new(name, size, texels, wrap, blended)));
         self.known.insert(key, read.clone());
         read
@@ -80,9 +85,10 @@ impl<'a> Textures<'a> {
         let document = self.document;
         match (&image.uri, image.buffer_view) {
             (Some(uri), _) => uri::read(uri, &document.folder, document.files),
-            (None, Some(view)) => {
-                document.view(view, "bufferView").map(|(bytes, _)| bytes.to_vec()).map_err(|(reason, _)| reason)
-            }
+            (None, Some(view)) => document
+                .view(view, "bufferView")
+                .map(|(bytes, _)| bytes.to_vec())
+                .map_err(|(reason, _)| reason),
             (None, None) => Err("it has neither uri nor bufferView".to_owned()),
         }
     }
@@ -102,10 +108,9 @@ impl<'a> Textures<'a> {
         if texels == 0 || width > MAX_SIDE || height > MAX_SIDE {
             return Err(format!("its size is {width} x {height}, and sides go from 1 to {MAX_SIDE}"));
         }
-        self.left = self
-            .left
-            .checked_sub(texels)
-            .ok_or_else(|| format!("with its {width} x {height} texels the images are more than {MAX_TEXELS}"))?;
+        self.left = self.left.checked_sub(texels).ok_or_else(|| {
+            format!("with its {width} x {height} texels the images are more than {MAX_TEXELS}")
+        })?;
         let pixels = DynamicImage::from_decoder(decoder).map_err(damaged)?.into_rgb8();
         Ok((UVec2::new(width, height), pixels.pixels().map(|pixel| pixel.0).collect()))
     }
@@ -114,7 +119,7 @@ impl<'a> Textures<'a> {
 fn name(image: &Image, index: usize) -> String {
     match (&image.uri, &image.name) {
         (Some(uri), _) if !uri.starts_with("data:") => uri::shown(uri),
-        (_, Some(name)) => format!("\"{name}\""),
+        (_, Some(name)) => name.clone(),
         _ => format!("textures[{index}]"),
     }
 }

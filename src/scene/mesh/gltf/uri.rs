@@ -41,5 +41,5 @@ pub(super) fn shown(uri: &str) -> String {
     if shown.len() < uri.len() {
         shown.push_str("...");
     }
-    format!("\"{shown}\"")
+    shown
 }
