@@ -29,7 +29,6 @@ use varikernel::glam::UVec2;
 use varikernel::image::{Format, check_writable};
 use varikernel::settings::{Edges, Kernel, MAX_RADIUS_LIMIT, Method, Order, RadiusChoice};
 
-use super::Outcome;
 use super::numbers::{fraction, whole};
 use super::photons::parse_count;
 use super::render::parse_radius;

@@ -41,7 +41,8 @@ impl Tree {
         let farthest = farthest_from_middle(&around);
         let usual = median(farthest.clone());
         let part = |wanted: bool| {
-            let members = (0_u32..).zip(&farthest).filter(|&(_, &distance)| (distance > FAR * usual) == wanted);
+            let members =
+                (0_u32..).zip(&farthest).filter(|&(_, &distance)| (distance > FAR * usual) == wanted);
             let members: Vec<u32> = members.map(|(number, _)| number).collect();
             (!members.is_empty()).then(|| Self::new(&around, members))
         };

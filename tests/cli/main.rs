@@ -8,6 +8,7 @@ mod devices;
 mod exact;
 mod files;
 mod glsl;
+mod gltf;
 mod interrupt;
 mod masks;
 #[path = "../common/osmesa.rs"]

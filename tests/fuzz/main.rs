@@ -55,7 +55,8 @@ fn round(name: &str) {
     }
     let path = folder.join(reader.file);
     let seeds = seeds(reader);
-    let limit = env::var("VARIKERNEL_FUZZ_SECONDS").ok().map(|seconds| Duration::from_secs(seconds.parse().unwrap()));
+    let limit =
+        env::var("VARIKERNEL_FUZZ_SECONDS").ok().map(|seconds| Duration::from_secs(seconds.parse().unwrap()));
     let seed = match limit {
         Some(_) => u64::try_from(SystemTime::UNIX_EPOCH.elapsed().unwrap().as_millis()).unwrap(),
         None => 1,
@@ -75,7 +76,11 @@ fn round(name: &str) {
         if ended.is_err() || took > LONGEST {
             let kept = folder.join(format!("failed-{seed}-{done}-{}", reader.file));
             fs::write(&kept, &bytes).unwrap();
-            panic!("{name}: {} after {took:?}: {}", if ended.is_err() { "a panic" } else { "slow" }, kept.display());
+            panic!(
+                "{name}: {} after {took:?}: {}",
+                if ended.is_err() { "a panic" } else { "slow" },
+                kept.display()
+            );
         }
         done += 1;
     }

@@ -6,8 +6,30 @@ use rand_pcg::Pcg64;
 
 /// Numbers that readers trip over, as text.
 const WORDS: [&str; 24] = [
-    "0", "-0", "-1", "1", "2", "3", "255", "256", "65535", "65536", "2147483647", "2147483648", "4294967295", "4294967296",
-    "18446744073709551616", "99999999999999999999999", "1e39", "-1e39", "1e-46", "1e999", "nan", "inf", "0.1", "1,5",
+    "0",
+    "-0",
+    "-1",
+    "1",
+    "2",
+    "3",
+    "255",
+    "256",
+    "65535",
+    "65536",
+    "2147483647",
+    "2147483648",
+    "4294967295",
+    "4294967296",
+    "18446744073709551616",
+    "99999999999999999999999",
+    "1e39",
+    "-1e39",
+    "1e-46",
+    "1e999",
+    "nan",
+    "inf",
+    "0.1",
+    "1,5",
 ];
 /// The same as bytes.
 const NUMBERS: [i64; 12] =
@@ -95,7 +117,8 @@ impl Mutator {
 
     /// Puts a line twice, away, or somewhere else.
     fn change_line(&mut self, bytes: &mut Vec<u8>) {
-        let mut lines: Vec<Vec<u8>> = bytes.split_inclusive(|&byte| byte == b'\n').map(<[u8]>::to_vec).collect();
+        let mut lines: Vec<Vec<u8>> =
+            bytes.split_inclusive(|&byte| byte == b'\n').map(<[u8]>::to_vec).collect();
         let Some(from) = self.place(lines.len()) else { return };
         let line = lines[from].clone();
         let to = self.random.random_range(0..=lines.len());

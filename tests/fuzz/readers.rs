@@ -36,7 +36,8 @@ grey = { lambert = [0.5, 0.5, 0.5] }
 own = { mesh = { file = \"a.EXTENSION\" } }
 given = { material = \"grey\", mesh = { file = \"a.EXTENSION\", smooth = true } }
 ";
-const OBJ: &str = "mtllib a.mtl\nv -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nvt 0 0\nusemtl red\nf 1/1 2/1 3/1 4/1\n";
+const OBJ: &str =
+    "mtllib a.mtl\nv -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nvt 0 0\nusemtl red\nf 1/1 2/1 3/1 4/1\n";
 const MTL: &str = "newmtl red\nKd 0.6 0.1 0.1\nillum 2\n";
 const MAPS: &str = "assets/maps";
 const SEEDS: &str = "tests/fuzz/seeds";
@@ -45,7 +46,13 @@ const SEEDS: &str = "tests/fuzz/seeds";
 pub(crate) const READERS: [Reader; 12] = [
     Reader { name: "exr", file: "a.exr", beside: &[], seeds: &[(SEEDS, "exr")], read: read_map },
     Reader { name: "npy", file: "a.npy", beside: &[], seeds: &[(SEEDS, "npy")], read: read_map },
-    Reader { name: "png", file: "a.png", beside: &[], seeds: &[(SEEDS, "png"), (MAPS, "png")], read: read_map },
+    Reader {
+        name: "png",
+        file: "a.png",
+        beside: &[],
+        seeds: &[(SEEDS, "png"), (MAPS, "png")],
+        read: read_map,
+    },
     Reader {
         name: "obj",
         file: "a.obj",
@@ -67,7 +74,13 @@ pub(crate) const READERS: [Reader; 12] = [
         seeds: &[(SEEDS, "gltf")],
         read: |path| read_mesh(path, "gltf"),
     },
-    Reader { name: "glb", file: "a.glb", beside: &[], seeds: &[(SEEDS, "glb")], read: |path| read_mesh(path, "glb") },
+    Reader {
+        name: "glb",
+        file: "a.glb",
+        beside: &[],
+        seeds: &[(SEEDS, "glb")],
+        read: |path| read_mesh(path, "glb"),
+    },
     Reader {
         name: "scene",
         file: "a.toml",

@@ -107,7 +107,8 @@ fn many_triangles_at_one_place_take_neither_long_nor_the_stack() {
         writeln!(nested, "f 1 {} {}", step + 1, step + 2).unwrap();
     }
     for mesh in [same, nested] {
-        let text = format!("{}[surfaces.mesh]\nmaterial = \"white\"\nmesh = {{ file = \"a.obj\" }}\n", crate::BARE);
+        let text =
+            format!("{}[surfaces.mesh]\nmaterial = \"white\"\nmesh = {{ file = \"a.obj\" }}\n", crate::BARE);
         let scene = crate::load_with(&text, &[("a.obj", mesh.as_bytes())]).unwrap();
         let ray = Ray { origin: DVec3::new(0.9, 0.4, -5.0), direction: DVec3::Z };
         let expected = by_trying_all(&scene, &ray);

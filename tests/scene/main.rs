@@ -7,6 +7,7 @@
 mod cast;
 mod exported;
 mod files;
+mod gltf;
 mod lights;
 mod meshes;
 mod mtl;

@@ -36,12 +36,7 @@ impl ProgressiveThrough {
     }
 
     /// Takes in photons, whose powers times `scale` are those of all photons so far.
-    pub(super) fn step(
-        &mut self,
-        photons: Vec<PhotonPoint>,
-        settings: &IrradianceSettings,
-        scale: f32,
-    ) {
+    pub(super) fn step(&mut self, photons: Vec<PhotonPoint>, settings: &IrradianceSettings, scale: f32) {
         if self.bent.is_empty() || self.photons.len() >= MOST {
             return;
         }
