@@ -1,25 +1,16 @@
 //! Images of a glTF file: PNG and JPEG, in the file or beside it.
 
 use std::collections::HashMap;
-use std::io::Cursor;
 use std::sync::Arc;
 
-use glam::UVec2;
 use gltf_json::texture::{MagFilter, Sampler, Texture as Entry, WrappingMode};
 use gltf_json::validation::Checked;
 use gltf_json::{Image, Index};
-use image::{DynamicImage, ImageDecoder as _, ImageFormat, ImageReader, Limits};
 
 use super::document::Document;
 use super::uri;
+use crate::scene::mesh::image::Images;
 use crate::scene::{Texture, Wrap};
-
-/// The longest side of an image.
-const MAX_SIDE: u32 = 16384;
-/// The most texels of all images together.
-const MAX_TEXELS: u64 = 1 << 28;
-/// The most bytes that a decoder may take.
-const MAX_ALLOC: u64 = 1 << 30;
 
 /// Extensions that bring images in formats which are not read.
 const OTHER_FORMATS: &[&str] =
@@ -32,13 +23,12 @@ type Key = (usize, [u8; 2], bool);
 pub(super) struct Textures<'a> {
     document: &'a Document<'a>,
     known: HashMap<Key, Result<Arc<Texture>, String>>,
-    /// Texels that may still be read.
-    left: u64,
+    images: Images,
 }
 
 impl<'a> Textures<'a> {
     pub(super) fn new(document: &'a Document<'a>) -> Self {
-        Self { document, known: HashMap::new(), left: MAX_TEXELS }
+        Self { document, known: HashMap::new(), images: Images::default() }
     }
 
     /// What messages call a texture.
@@ -73,7 +63,7 @@ impl<'a> Textures<'a> {
         let name = self.name(index);
         let read = self
             .bytes(image)
-            .and_then(|bytes| self.decode(&bytes))
+            .and_then(|bytes| self.images.decode(&bytes))
             .map_err(|reason| format!("{name}: {reason}"));
         let read = read.map(|(size, texels)| Arc::new(Texture::new(name, size, texels, wrap, blended)));
         self.known.insert(key, read.clone());
@@ -91,28 +81,6 @@ impl<'a> Textures<'a> {
                 .map_err(|(reason, _)| reason),
             (None, None) => Err("it has neither uri nor bufferView".to_owned()),
         }
-    }
-
-    /// Size and sRGB texels of an image, whose memory is taken only once its size is known to be possible.
-    fn decode(&mut self, bytes: &[u8]) -> Result<(UVec2, Vec<[u8; 3]>), String> {
-        let damaged = |error: image::ImageError| format!("it is damaged: {error}");
-        let mut reader = ImageReader::with_format(Cursor::new(bytes), format(bytes)?);
-        let mut limits = Limits::default();
-        limits.max_image_width = Some(MAX_SIDE);
-        limits.max_image_height = Some(MAX_SIDE);
-        limits.max_alloc = Some(MAX_ALLOC);
-        reader.limits(limits);
-        let decoder = reader.into_decoder().map_err(damaged)?;
-        let (width, height) = decoder.dimensions();
-        let texels = u64::from(width) * u64::from(height);
-        if texels == 0 || width > MAX_SIDE || height > MAX_SIDE {
-            return Err(format!("its size is {width} x {height}, and sides go from 1 to {MAX_SIDE}"));
-        }
-        self.left = self.left.checked_sub(texels).ok_or_else(|| {
-            format!("with its {width} x {height} texels the images are more than {MAX_TEXELS}")
-        })?;
-        let pixels = DynamicImage::from_decoder(decoder).map_err(damaged)?.into_rgb8();
-        Ok((UVec2::new(width, height), pixels.pixels().map(|pixel| pixel.0).collect()))
     }
 }
 
@@ -132,16 +100,4 @@ fn sampling(sampler: &Sampler) -> ([Wrap; 2], bool) {
     };
     let blended = sampler.mag_filter != Some(Checked::Valid(MagFilter::Nearest));
     ([wrap(sampler.wrap_s), wrap(sampler.wrap_t)], blended)
-}
-
-/// The format by the content; what the file calls it may be wrong.
-fn format(bytes: &[u8]) -> Result<ImageFormat, String> {
-    if bytes.starts_with(b"\xabKTX 20\xbb") {
-        return Err("it is KTX2, and only PNG and JPEG are supported".to_owned());
-    }
-    match image::guess_format(bytes) {
-        Ok(format @ (ImageFormat::Png | ImageFormat::Jpeg)) => Ok(format),
-        Ok(other) => Err(format!("it is {other:?}, and only PNG and JPEG are supported")),
-        Err(_) => Err("it is neither PNG nor JPEG".to_owned()),
-    }
 }

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 
 use super::lines::{Line, Name, shown};
 use super::mtl::{self, Entry};
+use super::pictures::Pictures;
 use crate::scene::Material;
 use crate::scene::mesh::Problem;
 use crate::scene::source::{self, Files};
@@ -123,6 +124,7 @@ impl<'a> Libraries<'a> {
         let known = Known::new(&files, &mut found.left_out);
         let mut users: BTreeMap<Place, Vec<u32>> = BTreeMap::new();
         let mut nameless = Vec::new();
+        let mut pictures = Pictures::new(self.files);
         for &(index, one) in wanted {
             if one.name.bare.is_empty() {
                 nameless.push(index);
@@ -139,7 +141,8 @@ impl<'a> Libraries<'a> {
                 let name = &entry.name.whole;
                 let of = format!("material \"{}\" of {path}", shown(name));
                 match (entry.material(name.clone()), users.get(&(file, number))) {
-                    (Ok((material, notes)), Some(users)) => {
+                    (Ok((mut material, mut notes)), Some(users)) => {
+                        pictures.hang(path, entry, &mut material, &mut notes);
                         found.take(material, users);
                         if !notes.is_empty() {
                             found.left_out.push(format!("{of}: {}", notes.join(", ")));

@@ -7,6 +7,7 @@ mod faces;
 mod lines;
 mod materials;
 mod mtl;
+mod pictures;
 mod polygon;
 
 use std::collections::HashMap;
@@ -57,13 +58,16 @@ pub(super) fn read(
     };
     let parts = faces.parts(|index| of_use.get(&index).copied())?;
 
-    let mut told: Vec<_> = statements.left_out().chain(left_out).collect();
+    let left_out = statements.left_out().chain(left_out).collect();
+    let mut mesh = Mesh { parts, materials, left_out, ..Mesh::default() };
+    pictures::without_coordinates(&mut mesh);
+    let told = &mut mesh.left_out;
     let more = told.len().saturating_sub(MAX_TOLD);
     told.truncate(MAX_TOLD);
     if more > 0 {
         told.push(format!("{more} more"));
     }
-    Ok(Mesh { parts, materials, left_out: told, ..Mesh::default() })
+    Ok(mesh)
 }
 
 /// What the statements so far have told.

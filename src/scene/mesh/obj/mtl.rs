@@ -15,9 +15,9 @@ const DEFAULT_DIFFUSE: f32 = 0.8;
 const DEFAULT_SPECULAR: f32 = 1.0;
 /// Index of refraction of glass that has no `Ni`.
 const DEFAULT_INDEX: f32 = 1.5;
-/// Statements that name an image.
-const TEXTURES: [&str; 13] = [
-    "map_Kd", "map_Ke", "map_d", "map_Ks", "map_Bump", "bump", "norm", "disp", "decal", "refl", "map_Ns",
+/// Statements that name an image which is not read.
+const OTHER_TEXTURES: [&str; 11] = [
+    "map_d", "map_Ks", "map_Bump", "bump", "norm", "disp", "decal", "refl", "map_Ns",
     "map_Pr", "map_Pm",
 ];
 
@@ -53,10 +53,14 @@ impl Entry<'_> {
     /// # Errors
     /// The line and field that are not possible, without the file.
     pub(super) fn material(&self, name: String) -> Result<(Material, Vec<String>), Problem> {
-        let mut notes = self.textures();
+        let mut notes = self.other_textures();
         let mut reflectance = |field: &'static str, default: f32| {
             if let Some(line) = self.last(field) {
                 return colour(line, 1.0);
+            }
+            // An image is all of the colour then.
+            if field == "Kd" && self.last("map_Kd").is_some() {
+                return Ok(Vec3::ONE);
             }
             notes.push(format!("no {field}, {default} is taken"));
             Ok(Vec3::splat(default))
@@ -69,7 +73,8 @@ impl Entry<'_> {
         } else {
             Scattering::Lambert(reflectance("Kd", DEFAULT_DIFFUSE)?)
         };
-        let emission = self.last("Ke").map_or(Ok(Vec3::ZERO), |line| colour(line, f32::MAX))?;
+        let without = if self.last("map_Ke").is_some() { Vec3::ONE } else { Vec3::ZERO };
+        let emission = self.last("Ke").map_or(Ok(without), |line| colour(line, f32::MAX))?;
         if matches!(scattering, Scattering::Dielectric { .. }) {
             if self.last("Tf").is_some_and(|line| colour_of(line).is_none_or(|filter| filter != Vec3::ONE)) {
                 notes.push("colour of the glass (Tf)".to_owned());
@@ -85,10 +90,15 @@ impl Entry<'_> {
         self.statements.iter().rfind(|line| line.keyword().eq_ignore_ascii_case(field.as_bytes()))
     }
 
-    /// The images that the material names.
-    fn textures(&self) -> Vec<String> {
-        let named = TEXTURES.iter().filter_map(|field| Some((field, self.last(field)?)));
-        named.map(|(field, line)| format!("texture \"{}\" ({field})", shown(&image(line)))).collect()
+    /// The images that the material names and that are not read.
+    fn other_textures(&self) -> Vec<String> {
+        let named = OTHER_TEXTURES.iter().filter_map(|field| Some((field, self.last(field)?)));
+        named.map(|(field, line)| format!("texture \"{}\" ({field})", shown(&image(line).name))).collect()
+    }
+
+    /// The image of `map_Kd` or `map_Ke`.
+    pub(super) fn image(&self, field: &str) -> Option<ImageName> {
+        self.last(field).map(image)
     }
 
     /// The field that makes the material transparent: `d` is opacity, `Tr` its opposite; programs that mix them up write both.
@@ -157,10 +167,21 @@ fn colour_of(line: &Line<'_>) -> Option<Vec3> {
     }
 }
 
-/// The name of an image, after its options; it may have blanks.
-fn image(line: &Line<'_>) -> String {
+/// What a statement says of an image.
+pub(super) struct ImageName {
+    /// Its file; the name may have blanks.
+    pub(super) name: String,
+    /// Whether its outermost texels continue it, instead of the image again (`-clamp on`).
+    pub(super) clamped: bool,
+    /// Other options that change it, as `-s`.
+    pub(super) options: Vec<String>,
+}
+
+/// The name of an image, after its options.
+fn image(line: &Line<'_>) -> ImageName {
     let whole = line.name().bare;
     let mut rest = whole.as_str();
+    let mut found = ImageName { name: String::new(), clamped: false, options: Vec::new() };
     while rest.starts_with('-') {
         let (option, after) = split_word(rest);
         let (fewest, most) = match option {
@@ -169,15 +190,23 @@ fn image(line: &Line<'_>) -> String {
             _ => (1, 1),
         };
         rest = after;
+        let mut value = "";
         for place in 0..most {
             let (word, after) = split_word(rest);
             if place >= fewest && word.parse::<f32>().is_err() {
                 break;
             }
-            rest = after;
+            (value, rest) = (word, after);
+        }
+        match option {
+            "-clamp" => found.clamped = value == "on",
+            // How it is filtered, which channel a grey one has, and colour correction that is off: nothing to tell.
+            "-blendu" | "-blendv" | "-boost" | "-texres" | "-imfchan" | "-cc" => {}
+            _ => found.options.push(option.to_owned()),
         }
     }
-    rest.to_owned()
+    rest.clone_into(&mut found.name);
+    found
 }
 
 fn split_word(text: &str) -> (&str, &str) {
