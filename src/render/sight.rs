@@ -98,7 +98,7 @@ impl Sight {
             }
             Scattering::Mirror(reflectance) => go(mirrored(ray, &hit, side), facing, share * reflectance),
             Scattering::ThinDielectric { transmittance, .. } => {
-                go(ray.direction, -facing, share * transmittance)
+                go(ray.direction, -facing, share * transmittance);
             }
             Scattering::Dielectric { index } => {
                 let ratio = if side > 0.0 { 1.0 / f64::from(index) } else { f64::from(index) };

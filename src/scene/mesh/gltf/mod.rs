@@ -20,6 +20,7 @@ mod texture;
 mod uri;
 
 use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 use std::fmt::Display;
 
 use super::{Mesh, Part, Problem};
@@ -51,12 +52,13 @@ pub(super) fn read(content: &[u8], files: &Files, name: &str) -> Result<Mesh, Pr
         };
         let place = format!("nodes[{index}]");
         let entry = document.find(own, "mesh", format!("{place}.mesh"))?;
-        if let Some(skin) = node.skin
-            && !skins.contains_key(&skin.value())
-        {
-            skins.insert(skin.value(), skin::joints(&document, &nodes, skin, &format!("{place}.skin"))?);
-        }
-        let joints = node.skin.and_then(|skin| skins.get(&skin.value()));
+        let joints = match node.skin.map(|skin| (skin, skins.entry(skin.value()))) {
+            Some((_, Entry::Occupied(known))) => Some(&*known.into_mut()),
+            Some((skin, Entry::Vacant(new))) => {
+                Some(&*new.insert(skin::joints(&document, &nodes, skin, &format!("{place}.skin"))?))
+            }
+            None => None,
+        };
         let places = match joints {
             // The joints alone say where a skinned mesh is.
             Some(_) => vec![DAffine3::IDENTITY],

@@ -1,6 +1,6 @@
 //! One primitive of a mesh: its faces where its node or its skin puts them.
 
-use glam::{DAffine3, Vec3};
+use glam::DAffine3;
 use gltf_json::mesh::{Mode, Primitive};
 use gltf_json::validation::Checked;
 
@@ -126,6 +126,6 @@ fn put(part: &mut Part, to_world: impl Fn(usize) -> DAffine3) {
     }
     for (vertex, normal) in part.normals.iter_mut().enumerate() {
         let turned = normal_matrix(to_world(vertex).matrix3) * normal.as_dvec3();
-        *normal = turned.try_normalize().map_or(Vec3::ZERO, |normal| normal.as_vec3());
+        *normal = turned.try_normalize().unwrap_or_default().as_vec3();
     }
 }
