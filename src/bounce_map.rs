@@ -42,11 +42,16 @@ impl BounceMaps {
         let light = emission.light(first);
         let end = photons.min(first.saturating_add(photons.div_ceil(PLACES)));
         let end = (first..end).find(|&id| emission.light(id) != light).unwrap_or(end);
+        // What no map tells is met by a ray.
+        if emission.is_aimed(light) {
+            let met_by_rays =
+                (first..end).map(|id| FirstHit { photon: emission.photon(id), primitive: u32::MAX });
+            return Ok(Some(met_by_rays.collect()));
+        }
         let place = emission.photon(first.midpoint(end - 1)).origin;
         let group: Vec<_> =
             (first..end).map(|id| EmittedPhoton { origin: place, ..emission.photon(id) }).collect();
 
-        // What no map tells is met by a ray.
         let mut hits: Vec<_> = group.iter().map(|&photon| FirstHit { photon, primitive: u32::MAX }).collect();
         for face in 0..FACES {
             let mine: Vec<usize> =

@@ -7,16 +7,19 @@
 //! - Cost: a draw of the scene for each side.
 
 use bytemuck::{Pod, Zeroable};
-use glam::{Mat4, UVec2, Vec3};
+use glam::{DVec3, Mat4, UVec2, Vec3};
 
 use crate::error::Result;
 use crate::gl::{
     Gl, Pass, Program, ShaderSource, StateGuard, Target, Texture, TextureFormat, Vertices, glsl,
 };
-use crate::scene::{Camera, LightPlace, Scene};
+use crate::scene::{Camera, LightPlace, Scene, plane};
 
 const TRIANGLES: &str = "cube map of triangles";
 const SPHERES: &str = "cube map of spheres";
+
+/// The near plane, as a share of the largest distance.
+pub(crate) const NEAREST: f32 = 1e-12;
 
 /// Sides of a cube.
 pub(crate) const FACES: usize = 6;
@@ -26,7 +29,9 @@ pub(crate) const FACES: usize = 6;
 #[repr(C)]
 struct Corner {
     position: Vec3,
-    unused: [f32; 6],
+    normal: Vec3,
+    unused: [f32; 3],
+    distance: f32,
     number: f32,
 }
 
@@ -68,7 +73,7 @@ impl CubeMap {
         Ok(Self {
             gl: gl.clone(),
             programs,
-            triangles: Vertices::upload(gl, &corners(scene), &[3, 3, 3, 1])?.labelled(TRIANGLES),
+            triangles: Vertices::upload(gl, &corners(scene), &[3, 3, 3, 1, 1])?.labelled(TRIANGLES),
             spheres: Vertices::upload(gl, &cubes(scene), &[3, 3, 3, 1, 1])?.labelled(SPHERES),
             map: Target::with_depth(gl, vec![map])?.labelled(&["cube map"]),
             fov_degrees: 2.0 * wider.atan().to_degrees(),
@@ -81,16 +86,21 @@ impl CubeMap {
     pub(crate) fn draw(&mut self, place: Vec3, face: usize) -> Result<&Texture> {
         let _state = StateGuard::new(&self.gl);
         let to_clip = self.to_clip(place, face);
+        let (far, [to_corner, to_right, to_next_row]) = (self.far(place), self.rays(face));
         self.map.clear(&[0]);
         self.map.clear_depth();
         for (label, program, vertices) in
             [(TRIANGLES, &self.programs[0], &self.triangles), (SPHERES, &self.programs[1], &self.spheres)]
         {
-            Pass::new(label, program)
+            let pass = Pass::new(label, program)
                 .set("to_clip", to_clip)
                 .set("camera", place)
-                .set("far", self.far(place))
-                .draw_triangles(vertices, &mut self.map)?;
+                .set("to_corner", to_corner)
+                .set("to_right", to_right)
+                .set("to_next_row", to_next_row)
+                .set("far", far);
+            let pass = if label == TRIANGLES { pass.set("plane_origin", Vec3::ZERO) } else { pass };
+            pass.draw_triangles(vertices, &mut self.map)?;
         }
         self.gl.check("drawing a cube map")?;
         Ok(self.map.texture())
@@ -98,18 +108,35 @@ impl CubeMap {
 
     /// From scene units to the clip space of one side.
     pub(crate) fn to_clip(&self, place: Vec3, face: usize) -> Mat4 {
-        let mut direction = Vec3::ZERO;
-        direction[face / 2] = if face.is_multiple_of(2) { 1.0 } else { -1.0 };
-        let mut up = Vec3::ZERO;
-        up[(face / 2 + 1) % 3] = 1.0;
+        let [direction, up] = axes(face);
         let camera = Camera { position: place, direction, up, vertical_fov_degrees: self.fov_degrees };
-        camera.projection(1.0, 1e-5 * self.extent, self.far(place)) * camera.view()
+        let far = self.far(place);
+        // Depth is the shaders' own, so that the near plane only has to be before everything.
+        camera.projection(1.0, NEAREST * far, far) * camera.view()
+    }
+
+    /// From `place` to the corner of a side at depth 1, and to the next column and row.
+    fn rays(&self, face: usize) -> [Vec3; 3] {
+        let [direction, up] = axes(face);
+        let half = (self.fov_degrees.to_radians() / 2.0).tan();
+        let right = direction.cross(up);
+        let texel = 2.0 * half / self.map.size().as_vec2().x;
+        [direction - half * (right + up), texel * right, texel * up]
     }
 
     /// A distance from `place` beyond everything.
     fn far(&self, place: Vec3) -> f32 {
         place.distance(self.centre) + self.extent
     }
+}
+
+/// The direction of a side, and what is up in it.
+fn axes(face: usize) -> [Vec3; 2] {
+    let mut direction = Vec3::ZERO;
+    direction[face / 2] = if face.is_multiple_of(2) { 1.0 } else { -1.0 };
+    let mut up = Vec3::ZERO;
+    up[(face / 2 + 1) % 3] = 1.0;
+    [direction, up]
 }
 
 /// The side of the cube that a direction leaves through: 0 and 1 along x, 2 and 3 along y, 4 and 5 along z.
@@ -135,11 +162,9 @@ fn corners(scene: &Scene) -> Vec<Corner> {
     let geometry = scene.geometry();
     let numbered = (1..).zip(&geometry.triangles);
     let corners = numbered.flat_map(|(number, triangle): (u32, _)| {
-        geometry.corners(triangle).map(|position| Corner {
-            position,
-            unused: [0.0; 6],
-            number: number as f32,
-        })
+        let places = geometry.corners(triangle);
+        let (normal, distance) = plane(places, DVec3::ZERO);
+        places.map(|position| Corner { position, normal, unused: [0.0; 3], distance, number: number as f32 })
     });
     corners.collect()
 }
@@ -167,11 +192,14 @@ pub(crate) fn sources() -> [ShaderSource; 2] {
         ShaderSource::new(TRIANGLES)
             .targets([TextureFormat::R32Uint])
             .vertex_file(glsl!("surfaces/triangles.vert"))
+            .file(glsl!("surfaces/ray.glsl"))
+            .file(glsl!("surfaces/plane.glsl"))
             .file(glsl!("cube_map/triangles.frag")),
         ShaderSource::new(SPHERES)
             .targets([TextureFormat::R32Uint])
             .define("PRIMITIVES", 1_u32)
             .vertex_file(glsl!("surfaces/spheres.vert"))
+            .file(glsl!("surfaces/ray.glsl"))
             .file(glsl!("surfaces/spheres.frag")),
     ]
 }

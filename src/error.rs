@@ -25,6 +25,13 @@ pub enum Error {
         remedy: String,
     },
 
+    /// A scene that sends no light.
+    #[error(
+        "no light of the scene shines\nhelp: give it one, such as [lights.lamp] with quad and radiance, or a material with \
+         emission"
+    )]
+    NoLight,
+
     /// A setting outside its range.
     #[error("{name} = {value} is not possible: {reason}")]
     Setting {
@@ -66,7 +73,10 @@ pub enum Error {
     },
 
     /// The context is older than OpenGL 3.3 core.
-    #[error("this needs OpenGL 3.3 core, but the context is \"{version}\" on \"{renderer}\"")]
+    #[error(
+        "this needs OpenGL 3.3 core, but the context is \"{version}\" on \"{renderer}\"\n\
+         help: ask for 3.3 core where the context is made, update the driver, or take another device"
+    )]
     Version {
         /// GL_VERSION.
         version: String,
@@ -140,8 +150,13 @@ pub enum Error {
     ContextLost,
 
     /// No context could be made on any device that was tried.
-    #[error("{0}")]
-    NoContext(String),
+    #[error("{reason}\nhelp: {remedy}")]
+    NoContext {
+        /// What was tried, and what came of it.
+        reason: String,
+        /// What the caller can do about it.
+        remedy: String,
+    },
 }
 
 impl Error {
@@ -149,6 +164,12 @@ impl Error {
     pub(crate) fn size(what: &'static str, expected: UVec2, got: UVec2) -> Self {
         let in_words = |size: UVec2| format!("{} x {}", size.x, size.y);
         Self::Mismatch { what, expected: in_words(expected), got: in_words(got) }
+    }
+
+    /// No context is current where one has to be.
+    pub(crate) fn no_current_context(reason: &str) -> Self {
+        let remedy = "make the context current on this thread first, and give its own loader";
+        Self::NoContext { reason: reason.to_owned(), remedy: remedy.to_owned() }
     }
 
     /// A file error; see [`Error::File`].

@@ -1,6 +1,7 @@
 //! Scene and camera to what each pixel shows: place, normal and albedo of the nearest surface (thesis 2.3.2).
 //!
-//! - Triangles are rasterised with a depth test. Spheres are met exactly: a cube is rasterised around each, and the
+//! - Triangles are rasterised with a depth test by distance, which f32 keeps as finely near as far, so that nothing is too near or too
+//!   far to be seen. A fragment meets the plane of its triangle along its own ray. Spheres are met exactly: a cube is rasterised around each, and the
 //!   fragments find where their line of sight meets the sphere.
 //! - Cost: one pass over the triangles and one over the spheres. Memory: 48 bytes a pixel, and 4 of depth.
 //! - Against the thesis: the place is kept, not only its depth, since photons are compared with it.
@@ -12,7 +13,7 @@ use glam::{Vec3, Vec4};
 use crate::error::Result;
 use crate::gl::{Gl, Pass, Program, ShaderSource, StateGuard, TextureFormat, Vertices, glsl};
 use crate::maps::SurfaceMaps;
-use crate::scene::{Scattering, Scene};
+use crate::scene::{Scattering, Scene, plane};
 use crate::view::View;
 
 const TRIANGLES: &str = "surfaces of triangles";
@@ -25,6 +26,7 @@ struct Corner {
     position: Vec3,
     normal: Vec3,
     albedo: Vec3,
+    distance: f32,
     number: f32,
 }
 
@@ -62,17 +64,26 @@ impl SurfaceStage {
     pub(crate) fn draw(&self, scene: &Scene, view: View) -> Result<SurfaceMaps> {
         let _state = StateGuard::new(&self.gl);
         let mut maps = SurfaceMaps::new(&self.gl, view)?;
-        let triangles = Vertices::upload(&self.gl, &corners(scene), &[3, 3, 3, 1])?.labelled(TRIANGLES);
+        let triangles = Vertices::upload(&self.gl, &corners(scene, view.position()), &[3, 3, 3, 1, 1])?;
+        let triangles = triangles.labelled(TRIANGLES);
         let spheres = Vertices::upload(&self.gl, &cubes(scene), &[3, 3, 3, 1, 1])?.labelled(SPHERES);
+        let [to_corner, to_right, to_next_row] = view.rays();
+        let (min, max) = scene.bounds();
+        let far = view.position().distance(min.midpoint(max)) + (max - min).length();
         maps.target().clear_floats(&[Vec4::ZERO; 3]);
         for (label, program, vertices) in
             [(TRIANGLES, &self.triangles, &triangles), (SPHERES, &self.spheres, &spheres)]
         {
-            Pass::new(label, program)
+            let pass = Pass::new(label, program)
                 .set("to_clip", view.to_clip())
                 .set("camera", view.position())
-                .set("view_direction", view.direction())
-                .draw_triangles(vertices, maps.target())?;
+                .set("to_corner", to_corner)
+                .set("to_right", to_right)
+                .set("to_next_row", to_next_row)
+                .set("far", far);
+            // From the camera the distances of planes are as exact as f32 can be.
+            let pass = if label == TRIANGLES { pass.set("plane_origin", view.position()) } else { pass };
+            pass.draw_triangles(vertices, maps.target())?;
         }
         self.gl.check("drawing the surfaces")?;
         Ok(maps)
@@ -92,14 +103,14 @@ fn appearance(scene: &Scene, surface: u32, material: u32) -> (f32, Vec3) {
     }
 }
 
-fn corners(scene: &Scene) -> Vec<Corner> {
+/// Triangles, whose distances count from the camera.
+fn corners(scene: &Scene, camera: Vec3) -> Vec<Corner> {
     let geometry = scene.geometry();
     let of_triangle = |triangle: &crate::scene::Triangle| {
         let places = geometry.corners(triangle);
-        let [a, b, c] = places.map(Vec3::as_dvec3);
-        let normal = (b - a).cross(c - a).normalize().as_vec3();
+        let (normal, distance) = plane(places, camera.as_dvec3());
         let (number, albedo) = appearance(scene, triangle.surface, triangle.material);
-        places.map(|position| Corner { position, normal, albedo, number })
+        places.map(|position| Corner { position, normal, albedo, distance, number })
     };
     geometry.triangles.iter().flat_map(of_triangle).collect()
 }
@@ -118,10 +129,13 @@ pub(crate) fn sources() -> [ShaderSource; 2] {
         ShaderSource::new(TRIANGLES)
             .targets([TextureFormat::Rgba32Float; 3])
             .vertex_file(glsl!("surfaces/triangles.vert"))
+            .file(glsl!("surfaces/ray.glsl"))
+            .file(glsl!("surfaces/plane.glsl"))
             .file(glsl!("surfaces/triangles.frag")),
         ShaderSource::new(SPHERES)
             .targets([TextureFormat::Rgba32Float; 3])
             .vertex_file(glsl!("surfaces/spheres.vert"))
+            .file(glsl!("surfaces/ray.glsl"))
             .file(glsl!("surfaces/spheres.frag")),
     ]
 }

@@ -9,6 +9,7 @@ use clap::Parser as _;
 fn main() -> ExitCode {
     let cli = cli::Cli::parse();
     cli::log_to_stderr(cli.verbose);
+    cli::interrupt::leave_no_unfinished_files();
     match cli::run(cli) {
         Ok(cli::Outcome::Done) => ExitCode::SUCCESS,
         Ok(cli::Outcome::Differs) => ExitCode::from(1),

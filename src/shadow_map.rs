@@ -3,8 +3,8 @@
 //! - Around each place of a light, a cube of maps tells what is nearest to it. A pixel is lit if what the map tells in its
 //!   direction is not between the two. Area lights are some places, spread evenly, whose shadows add up to a soft one.
 //! - Against the thesis: maps hold primitives instead of depths, and pixels meet those again, exactly. So shadows have edges
-//!   as sharp as with rays, and there is no depth bias: only what is nearer to a surface than 10^-4 of the scene's extent casts
-//!   no shadow on it. What no texel sees, since it is thinner or behind something else, casts none either; a gap
+//!   as sharp as with rays, and there is no depth bias: only what is nearer to a surface than 2·10^-6 of its distance from the camera,
+//!   the origin and its own corners casts no shadow on it. What no texel sees, since it is thinner or behind something else, casts none either; a gap
 //!   between triangles that is thinner than a texel is taken for a crack, and closed, if it is more than two texels away.
 //! - Glass and mirrors cast hard shadows: photons bring the light that passes them.
 //! - Places are the same for all pixels: few of them give steps, where rays give noise.
@@ -27,8 +27,6 @@ const LABEL: &str = "direct light by shadow map";
 const SIDE: u16 = 512;
 /// Texels beyond a side's edges: the four around a direction may be one past them.
 const BORDER: u16 = 1;
-/// A place this near to a primitive, as a share of the scene's extent, lies on it: far more than what f32 loses.
-const MARGIN: f32 = 1e-4;
 /// Primitives in a row of their texture, which has three texels for each: no driver has narrower ones than 1024.
 const ROW: usize = 341;
 
@@ -39,7 +37,6 @@ pub(crate) struct ShadowMaps {
     program: Program,
     cube: CubeMap,
     primitives: Texture,
-    margin: f32,
     irradiance: Target,
 }
 
@@ -52,13 +49,11 @@ impl ShadowMaps {
             Texture::new(gl, TextureFormat::Rgba32Float, texels.size(), 1)?.labelled("primitives");
         primitives.upload(&texels);
         let irradiance = Texture::new(gl, TextureFormat::Rgba32Float, size, 1)?;
-        let (min, max) = scene.bounds();
         Ok(Self {
             gl: gl.clone(),
             program: Program::new(gl, &source())?,
             cube,
             primitives,
-            margin: MARGIN * (max - min).length(),
             irradiance: Target::single(gl, irradiance)?.labelled(&["direct irradiance"]),
         })
     }
@@ -101,7 +96,6 @@ impl ShadowMaps {
             .set("intensity", light.intensity.as_vec3())
             .set("face", i32::try_from(face).unwrap_or_else(|_| unreachable!("one of six")))
             .set("to_face", to_face)
-            .set("margin", self.margin)
             .add(&mut self.irradiance)
     }
 }

@@ -12,11 +12,12 @@ layout(location = 3) in float photon_surface;
 // To clip space, with row 0 of the picture at the bottom.
 uniform mat4 to_clip;
 
-// Where a place is in the picture, in pixels.
+// Where a place is in the picture, in pixels; behind the camera and far beside the picture: somewhere outside.
 vec2 pixel_of(vec3 place)
 {
     vec4 clip = to_clip * vec4(place, 1.0);
-    return (clip.xy / max(clip.w, 1e-6) * 0.5 + 0.5) * vec2(map_size);
+    vec2 at = clip.w > 0.0 ? clamp(clip.xy / clip.w, -4.0, 4.0) : vec2(-4.0);
+    return (at * 0.5 + 0.5) * vec2(map_size);
 }
 
 // Whether the photon is visible: in the picture, and on the surface that its pixel shows. It may lie half a pixel before

@@ -4,8 +4,15 @@
 uniform usampler2D nearest;
 // Three texels for each: corner and two edges of a triangle; centre and radius of a sphere.
 uniform sampler2D primitives;
-// In scene units: a place this near to a primitive lies on it.
-uniform float margin;
+// Sizes of the numbers that the pixel's place was found from, in scene units.
+float coarseness = 0.0;
+
+// A place this near to a primitive lies on it: several times what f32 loses of the pixel's place, and of the way to it from the
+// primitive's corner or middle.
+float margin_of(vec3 from_primitive)
+{
+    return 2e-6 * (coarseness + length(from_primitive));
+}
 
 vec4 texel(int index)
 {
@@ -19,6 +26,7 @@ bool is_sphere_between(vec3 from, vec3 away, vec3 centre, float radius)
     vec3 outward = from - centre;
     float squared = dot(away, away);
     float half_linear = dot(outward, away);
+    float margin = margin_of(outward);
     float end = 1.0 - margin * inversesqrt(squared);
     if (abs(length(outward) - radius) <= margin) {
         // From the sphere itself only the way through it counts.
@@ -48,6 +56,7 @@ int triangle_between(vec3 from, vec3 away, vec3 corner, vec3 edge1, vec3 edge2)
 {
     vec3 across = cross(edge1, edge2);
     float size = length(across);
+    float margin = margin_of(from - corner);
     float before = dot(across, from - corner) / size;
     float after = dot(across, from + away - corner) / size;
     if (before * after >= 0.0 || min(abs(before), abs(after)) <= margin) {

@@ -68,6 +68,7 @@ void main()
     if (facing.w <= 0.0 || face_of(-away) != face) {
         return;
     }
+    coarseness = texelFetch(position, pixel, 0).w + max(max(abs(from.x), abs(from.y)), abs(from.z));
     float squared = dot(away, away);
     vec3 to_light = away * inversesqrt(squared);
     float cosine = dot(facing.xyz, to_light);

@@ -14,7 +14,6 @@ layout(location = 4) in float sphere_number;
 // From scene units to clip space.
 uniform mat4 to_clip;
 
-out vec3 at;
 flat out vec3 centre;
 flat out vec3 reflectance;
 flat out float radius;
@@ -22,7 +21,6 @@ flat out float number;
 
 void main()
 {
-    at = corner;
     centre = sphere_centre;
     reflectance = sphere_albedo;
     radius = sphere_radius;

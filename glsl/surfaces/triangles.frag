@@ -1,12 +1,5 @@
-// Place, normal and albedo of what is nearest (thesis 2.3.2).
+// Place, normal and albedo of what is nearest (thesis 2.3.2). Follows surfaces/plane.glsl.
 
-// The pinhole, in scene units.
-uniform vec3 camera;
-// Unit vector along which depth is measured.
-uniform vec3 view_direction;
-
-in vec3 at;
-flat in vec3 facing;
 flat in vec3 reflectance;
 flat in float number;
 
@@ -19,8 +12,11 @@ layout(location = 2) out vec4 albedo;
 
 void main()
 {
-    vec3 sight = at - camera;
-    position = vec4(at, dot(sight, view_direction));
+    vec3 ray = ray_of_pixel();
+    vec3 sight = normalize(ray);
+    float distance = distance_to_plane(sight);
+    position = vec4(camera + distance * sight, distance / length(ray));
     normal = vec4(dot(facing, sight) > 0.0 ? -facing : facing, number);
     albedo = vec4(reflectance, 1.0);
+    gl_FragDepth = depth_of(distance);
 }

@@ -99,7 +99,7 @@ pub unsafe extern "C" fn varikernel_context_create(
         let load = |name: &CStr| unsafe { loader(name.as_ptr(), user) }.cast_const();
         let get_string = load(c"glGetString");
         if get_string.is_null() {
-            return Err(Error::NoContext("the loader does not know glGetString".to_owned()).into());
+            return Err(Error::no_current_context("the loader does not know glGetString").into());
         }
         // SAFETY: the host vouches that this is the address of glGetString, which has this type.
         let get_string = unsafe { std::mem::transmute::<*const c_void, GetString>(get_string) };

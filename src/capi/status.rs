@@ -65,7 +65,7 @@ impl From<Error> for Failure {
             Error::OutOfMemory { .. } => Status::OutOfMemory,
             Error::ContextLost => Status::ContextLost,
             Error::Gl { .. } => Status::OpenGl,
-            Error::NoContext(_) => Status::NoContext,
+            Error::NoContext { .. } => Status::NoContext,
             // Nothing here reads files, lets a caller name uniforms or needs a query.
             Error::File { .. } | Error::UnknownUniform { .. } | Error::QueryRunning { .. } => {
                 Status::Internal

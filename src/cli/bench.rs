@@ -12,14 +12,16 @@ use anyhow::{Context as _, Result, bail};
 use clap::ValueEnum as _;
 use glam::UVec2;
 use indicatif::{ProgressBar, ProgressStyle};
-use varikernel::context::{self, DeviceChoice};
+use varikernel::context::DeviceChoice;
 use varikernel::image::{ReadOptions, check_writable, read_counts};
 use varikernel::measure::bench::{self, BenchSettings, FastSuite, MapSource, Progress, Protocol, Report};
 use varikernel::measure::rivals::Rival;
 use varikernel::settings::{Edges, MAX_RADIUS_LIMIT, Method, Order, SatBuild, SatSamples, Storage};
 use varikernel::synth::Kind;
 
-use super::Outcome;
+use super::numbers::{duration, whole};
+use super::saving::{Autosave, Resume, how_to_go_on};
+use super::{Outcome, device};
 
 /// Time the methods, check their answers, and rank them.
 ///
@@ -43,7 +45,8 @@ pub(crate) struct Args {
     build_sizes: Option<Vec<UVec2>>,
 
     /// Photons of --suite picture that are traced and drawn [default: 1e6].
-    #[arg(long, value_parser = super::photons::parse_count, requires = "suite", value_name = "NUMBER")]
+    #[arg(long, value_parser = super::photons::parse_count, requires = "suite", value_name = "NUMBER",
+          allow_negative_numbers = true)]
     photons: Option<u32>,
 
     /// Map to time with, again for more: a kind of `varikernel synth`, or an EXR, PNG or NPY file of counts.
@@ -64,12 +67,12 @@ pub(crate) struct Args {
 
     /// MR: the radius at which a search ends, in pixels.
     #[arg(short = 'r', long, value_delimiter = ',', default_value = "32",
-          value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_RADIUS_LIMIT)))]
+          value_parser = whole(1..=MAX_RADIUS_LIMIT), allow_negative_numbers = true)]
     max_radius: Vec<u32>,
 
     /// n: photons that a box has to hold.
     #[arg(short = 'n', long, value_delimiter = ',', default_value = "25",
-          value_parser = clap::value_parser!(u32).range(1..))]
+          value_parser = whole(1..=u32::MAX), allow_negative_numbers = true)]
     min_photons: Vec<u32>,
 
     /// What counts outside the map.
@@ -100,7 +103,7 @@ pub(crate) struct Args {
 
     /// Time to share out among all cases, such as 90s or 5m [default: 60s, 3m for --suite fast, or 10m for the thesis's
     /// protocol].
-    #[arg(long, value_parser = humantime::parse_duration)]
+    #[arg(long, value_parser = duration, allow_negative_numbers = true)]
     budget: Option<Duration>,
 
     /// Write every sample to this file, anew after each case, or after each round of --suite picture.
@@ -176,7 +179,7 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     }
     let earlier = args.resume.as_deref().map(Report::load).transpose()?;
     let settings = settings(args);
-    let gl = context::open(&args.device)?;
+    let gl = device::open(&args.device)?;
     let maps = match &settings.suite {
         Some(suite) => suite.maps(),
         None => maps(args, gl.info().max_texture_size)?,
@@ -186,15 +189,21 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     }
 
     let bar = progress_bar();
-    let mut saver = Saver { json, csv: args.csv.as_ref(), last: Instant::now(), took: Duration::ZERO };
+    let mut saver =
+        Saver { json, csv: args.csv.as_ref(), took: Duration::ZERO, is_saved: args.resume.is_some() };
+    let mut autosave = Autosave::new(Duration::ZERO);
     let report = bench::run(&gl, &settings, &maps, earlier, &mut |report, progress| {
         show(&bar, progress);
-        saver.save_if_due(report)
+        autosave.save_if_due(|| saver.save(report));
+        autosave.wait(20 * saver.took);
+        Ok(())
     })?;
     bar.finish_and_clear();
-    saver.save(&report)?;
+    let last_save = saver.save(&report);
     table::print_report(&report, json.map(PathBuf::as_path))?;
     targets::print(&report.targets)?;
+    let resume = if saver.is_saved { RESUME } else { Resume::Anew };
+    last_save.map_err(|error| how_to_go_on(error, &resume))?;
     if !report.runs.iter().any(|run| run.case.method.is_some()) {
         bail!("no method was timed; the reasons are above");
     }
@@ -277,24 +286,26 @@ fn show(bar: &ProgressBar, progress: &Progress) {
     bar.set_message(progress.case.clone());
 }
 
+/// How to go on with what --json wrote.
+const RESUME: Resume = Resume::Instead { of: "--json", option: "--resume" };
+
 /// Writes the files after each case, unless writing would take more than a twentieth of the time.
 struct Saver<'a> {
     json: Option<&'a PathBuf>,
     csv: Option<&'a PathBuf>,
-    last: Instant,
     took: Duration,
+    /// Whether there is something to go on with.
+    is_saved: bool,
 }
 
 impl Saver<'_> {
-    fn save_if_due(&mut self, report: &Report) -> varikernel::Result<()> {
-        if self.last.elapsed() < 20 * self.took { Ok(()) } else { self.save(report) }
-    }
-
     fn save(&mut self, report: &Report) -> varikernel::Result<()> {
         let start = Instant::now();
-        self.json.map_or(Ok(()), |path| report.save(path))?;
+        if let Some(path) = self.json {
+            report.save(path)?;
+            self.is_saved = true;
+        }
         self.csv.map_or(Ok(()), |path| report.save_csv(path))?;
-        self.last = Instant::now();
         self.took = start.elapsed();
         Ok(())
     }

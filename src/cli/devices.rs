@@ -2,24 +2,38 @@
 
 use anyhow::Result;
 use serde::Serialize;
-use varikernel::context;
-use varikernel::gl::DeviceInfo;
+use varikernel::Error;
+use varikernel::context::{self, DeviceChoice};
 
+use super::device::{self, Answer};
 use super::{Outcome, output};
 
-/// List every OpenGL device that was found, and why any of them failed.
+/// List every OpenGL device that was found, why any of them failed, and what helps.
+///
+/// Each is tried in a process of its own, so that a driver that crashes is an answer too. Exit code 2 if none works.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
     /// Print one JSON object instead of a table.
     #[arg(long)]
     json: bool,
+
+    /// Open this device in this process, print its answer as JSON, and nothing else.
+    #[arg(long, hide = true, value_name = "DEVICE")]
+    answer_of: Option<DeviceChoice>,
 }
 
 #[derive(Serialize)]
 struct Listing {
     devices: Vec<Entry>,
-    /// Platforms that are missing as a whole, with the reason.
-    missing: Vec<String>,
+    /// Platforms that are missing as a whole, or a vendor of them.
+    missing: Vec<Missing>,
+}
+
+#[derive(Serialize)]
+struct Missing {
+    platform: String,
+    error: String,
+    remedy: String,
 }
 
 #[derive(Serialize)]
@@ -30,45 +44,54 @@ struct Entry {
     answer: Answer,
 }
 
-#[derive(Serialize)]
-#[serde(rename_all = "snake_case")]
-enum Answer {
-    Info(DeviceInfo),
-    Error(String),
-}
-
 pub(crate) fn run(args: &Args) -> Result<Outcome> {
+    if let Some(choice) = &args.answer_of {
+        output::print_json(&device::answer_here(choice))?;
+        return Ok(Outcome::Done);
+    }
     let (candidates, missing) = context::candidates();
-    let devices = candidates
-        .iter()
-        .map(|candidate| Entry {
-            device: candidate.choice.to_string(),
-            description: candidate.description.clone(),
-            answer: match candidate.open() {
-                Ok(gl) => Answer::Info(gl.info().clone()),
-                Err(error) => Answer::Error(error.to_string()),
-            },
-        })
-        .collect();
-    let listing = Listing { devices, missing };
+    let entries = candidates.iter().map(|candidate| Entry {
+        device: candidate.choice.to_string(),
+        description: candidate.description.clone(),
+        answer: device::in_child(candidate),
+    });
+    let missing = missing.into_iter().map(|missing| Missing {
+        platform: missing.platform.to_string(),
+        error: missing.refusal.reason,
+        remedy: missing.refusal.remedy,
+    });
+    let listing = Listing { devices: entries.collect(), missing: missing.collect() };
     if args.json {
         output::print_json(&listing)?;
     } else {
         print_listing(&listing)?;
     }
-    if listing.devices.iter().all(|entry| matches!(entry.answer, Answer::Error(_))) {
-        // The error of opening any device says what to install.
-        context::open(&context::DeviceChoice::Auto)?;
+    if listing.devices.iter().all(|entry| matches!(entry.answer, Answer::Fails { .. })) {
+        // As where any device is to be opened, by the answers that are known.
+        context::open_by(&DeviceChoice::Auto, &mut |candidate| Err(known(&listing, &candidate.choice)))?;
     }
     Ok(Outcome::Done)
+}
+
+/// Why the device fails, by its entry.
+fn known(listing: &Listing, choice: &DeviceChoice) -> Error {
+    let name = choice.to_string();
+    let entry = listing.devices.iter().find(|entry| entry.device == name);
+    let (reason, remedy) = match entry.map(|entry| entry.answer.clone()) {
+        Some(Answer::Fails { error, remedy, .. }) => (error, remedy),
+        _ => ("it came after the list was made".to_owned(), "list the devices again".to_owned()),
+    };
+    Error::NoContext { reason, remedy }
 }
 
 fn print_listing(listing: &Listing) -> Result<()> {
     for entry in &listing.devices {
         output::print(&format!("{}  ({})", entry.device, entry.description))?;
         let facts = match &entry.answer {
-            Answer::Error(error) => vec![("  failed", error.clone())],
-            Answer::Info(info) => vec![
+            Answer::Fails { error, remedy, .. } => {
+                vec![("  failed", error.clone()), ("  help", remedy.clone())]
+            }
+            Answer::Works { info } => vec![
                 ("  renderer", info.renderer.clone()),
                 ("  kind", if info.software { "software" } else { "hardware" }.to_owned()),
                 ("  vendor", info.vendor.clone()),
@@ -81,8 +104,9 @@ fn print_listing(listing: &Listing) -> Result<()> {
         };
         output::print_facts(&facts)?;
     }
-    for platform in &listing.missing {
+    for Missing { platform, error, remedy } in &listing.missing {
         output::print(&format!("not available: {platform}"))?;
+        output::print_facts(&[("  failed", error.clone()), ("  help", remedy.clone())])?;
     }
     Ok(())
 }

@@ -8,7 +8,6 @@ use std::path::PathBuf;
 
 use anyhow::{Context as _, Result, bail};
 use serde::Serialize;
-use varikernel::context;
 use varikernel::image::{
     Picture, Tile, check_writable, contact_sheet, picture_of, write_atomically, write_colours,
 };
@@ -20,9 +19,10 @@ use varikernel::settings::{MAX_PICTURE_RADIUS, PictureSettings, RadiusChoice};
 use varikernel::{Gl, Image};
 
 use self::regions::{RegionErrors, Regions};
+use super::numbers::whole_checked_later;
 use super::photons::load;
 use super::render::{Bar, Source, in_words_of_options};
-use super::{Outcome, output};
+use super::{Outcome, device, output};
 
 /// Fixed radii that are tried for the best one.
 const RADII: [u32; 12] = [1, 2, 3, 4, 5, 6, 8, 10, 12, 16, 24, 32];
@@ -45,7 +45,8 @@ pub(crate) struct Args {
     output: PathBuf,
 
     /// Seeds that the reference is averaged over.
-    #[arg(long, default_value_t = 32, value_name = "NUMBER")]
+    #[arg(long, default_value_t = 32, value_name = "NUMBER", allow_negative_numbers = true)]
+    #[arg(value_parser = whole_checked_later(2..=u32::MAX))]
     reference_seeds: u32,
 
     /// Print one JSON object instead of a table.
@@ -109,7 +110,7 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     let (settings, trace) = (source.picture(), source.trace());
     settings.validate().and_then(|()| trace.validate()).map_err(in_words_of_options)?;
     let scene = load(&source.scene)?;
-    let gl = context::open(&source.device)?;
+    let gl = device::open(&source.device)?;
 
     let bar = Bar::new();
     let halves = references(args, &gl, &scene, &bar).map_err(in_words_of_options)?;

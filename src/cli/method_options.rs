@@ -6,16 +6,18 @@ use varikernel::settings::{
     Storage, Variation,
 };
 
+use super::numbers::whole_checked_later;
+
 /// The question and the method; `radius` and `glsl` take the same.
 #[derive(Debug, clap::Args)]
 pub(super) struct MethodOptions {
     /// n: photons that a box has to hold, at least 1.
-    #[arg(short = 'n', long, default_value_t = 25, value_name = "N", value_parser = whole_number)]
+    #[arg(short = 'n', long, default_value_t = 25, value_name = "N", value_parser = whole_checked_later(1..=u32::MAX))]
     #[arg(allow_negative_numbers = true)]
     pub(super) min_photons: u32,
 
     /// MR: the radius at which the search ends, in pixels, 1 to 32767; pixels that find too few photons get it.
-    #[arg(short = 'r', long, default_value_t = 32, value_name = "MR", value_parser = whole_number)]
+    #[arg(short = 'r', long, default_value_t = 32, value_name = "MR", value_parser = whole_checked_later(1..=u32::MAX))]
     #[arg(allow_negative_numbers = true)]
     pub(super) max_radius: u32,
 
@@ -95,10 +97,6 @@ enum Fidelity {
     Corrected,
     /// With the faults, made well defined.
     AsPrinted,
-}
-
-fn whole_number(text: &str) -> Result<u32, String> {
-    text.parse().map_err(|_| format!("give a whole number from 1 to {}", u32::MAX))
 }
 
 /// A method, or the planner's choice.

@@ -2,16 +2,20 @@
 
 mod bench;
 mod compare;
+mod device;
 mod devices;
 mod figures;
 mod glsl;
+pub(crate) mod interrupt;
 mod method_options;
+mod numbers;
 pub(crate) mod output;
 mod photons;
 mod radius;
 mod real_map;
 mod render;
 mod reproduce;
+mod saving;
 mod share_bar;
 mod stress;
 mod study;
@@ -114,4 +118,47 @@ pub(crate) fn log_to_stderr(verbose: u8) {
     let filter = EnvFilter::try_from_default_env().unwrap_or_else(|_| EnvFilter::new(level));
     let colours = io::stderr().is_terminal();
     tracing_subscriber::fmt().with_env_filter(filter).with_ansi(colours).with_writer(io::stderr).init();
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory as _;
+
+    use super::*;
+
+    /// The words with which an option's value is refused; nothing if it is taken.
+    fn refusal(verb: &str, option: &[&str]) -> Option<String> {
+        let words = [&["varikernel", verb], option].concat();
+        Cli::try_parse_from(words).err().map(|error| error.to_string())
+    }
+
+    #[test]
+    fn no_option_answers_in_the_words_of_a_parser() {
+        let bare =
+            ["invalid digit", "invalid float", "number too", "cannot parse", "not in ", "is not a number"];
+        let mut numbers = 0;
+        for verb in Cli::command().get_subcommands() {
+            for option in verb.get_arguments().filter(|option| option.get_action().takes_values()) {
+                let Some(long) = option.get_long() else { continue };
+                for value in ["-1", "x", "", "1e99", "99999999999999999999", "-1.5e400"] {
+                    let joined =
+                        refusal(verb.get_name(), &[&format!("--{long}={value}")]).unwrap_or_default();
+                    assert!(!bare.iter().any(|words| joined.contains(words)), "{long}: {joined}");
+                    // Numbers below zero come as far as the option in both forms.
+                    if value == "-1" && joined.contains("give a whole number") {
+                        numbers += 1;
+                        let apart = refusal(verb.get_name(), &[&format!("--{long}"), value]);
+                        assert_eq!(apart.as_ref(), Some(&joined), "{long}");
+                    }
+                }
+            }
+        }
+        assert!(numbers > 20, "only {numbers} options take whole numbers");
+    }
+
+    #[test]
+    fn seeds_are_told_their_range() {
+        let words = refusal("render", &["-o", "out.exr", "--seed", "-1"]).unwrap_or_default();
+        assert!(words.contains("give a whole number from 0 to 18446744073709551615"), "{words}");
+    }
 }

@@ -7,7 +7,7 @@ use anyhow::{Context as _, Result, bail};
 use comfy_table::presets::NOTHING;
 use comfy_table::{ContentArrangement, Table};
 use serde::Serialize;
-use varikernel::image::check_writable;
+use varikernel::image::{check_writable, output_place};
 
 /// Columns of a terminal that tables fit into.
 const WIDTH: u16 = 80;
@@ -45,7 +45,23 @@ pub(crate) fn print_sentences(sentences: &[String]) -> Result<()> {
 
 /// How the program was called, for its reports.
 pub(crate) fn command() -> String {
-    std::iter::once("varikernel".to_owned()).chain(std::env::args().skip(1)).collect::<Vec<_>>().join(" ")
+    let call = std::iter::once("varikernel".to_owned()).chain(words_of_the_call().skip(1));
+    call.map(|word| quoted(&word)).collect::<Vec<_>>().join(" ")
+}
+
+/// The program and its arguments; what is no Unicode in them is replaced.
+pub(crate) fn words_of_the_call() -> impl Iterator<Item = String> {
+    std::env::args_os().map(|word| word.to_string_lossy().into_owned())
+}
+
+/// A word for a shell.
+pub(crate) fn quoted(text: &str) -> String {
+    let plain = |letter: char| letter.is_ascii_alphanumeric() || "-_./:=,+@%".contains(letter);
+    if !text.is_empty() && text.chars().all(plain) {
+        text.to_owned()
+    } else {
+        format!("'{}'", text.replace('\'', "'\\''"))
+    }
 }
 
 /// The error and what caused it, as one message.
@@ -80,8 +96,7 @@ pub(crate) fn check_files(input: (&str, &Path), outputs: &[(&str, Option<&Path>)
 
 /// The file itself, whichever way it is named and whether or not it exists.
 fn place_of(path: &Path) -> PathBuf {
-    path.canonicalize().unwrap_or_else(|_| {
-        let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
-        folder.canonicalize().unwrap_or_default().join(path.file_name().unwrap_or_default())
-    })
+    let path = output_place(path).unwrap_or_else(|_| path.to_owned());
+    let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
+    folder.canonicalize().unwrap_or_default().join(path.file_name().unwrap_or_default())
 }

@@ -11,6 +11,7 @@ use varikernel::image::write_atomically;
 use varikernel::photon::{self, Emission, Ends, Landings, PhotonFormat, Tally, TraceSettings};
 use varikernel::scene::Scene;
 
+use super::numbers::{whole, whole_checked_later};
 use super::{Outcome, output};
 
 /// Trace photons through a scene and write their diffuse landings.
@@ -29,15 +30,16 @@ pub(crate) struct Args {
     output: Option<PathBuf>,
 
     /// Photons that leave the lights; 1e6 is a million.
-    #[arg(long, default_value = "1e6", value_parser = parse_count, value_name = "NUMBER")]
+    #[arg(long, default_value = "1e6", value_parser = parse_count, value_name = "NUMBER", allow_negative_numbers = true)]
     photons: u32,
 
     /// Diffuse landings after which a photon is followed no further.
-    #[arg(long, default_value_t = 8, value_name = "NUMBER")]
+    #[arg(long, default_value_t = 8, value_name = "NUMBER", value_parser = whole_checked_later(1..=u32::MAX))]
+    #[arg(allow_negative_numbers = true)]
     bounces: u32,
 
     /// A whole number; the same seed gives the same photons.
-    #[arg(long, default_value_t = 1, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 1, value_parser = whole(0..=u64::MAX), allow_negative_numbers = true)]
     seed: u64,
 
     /// End photons by chance, in proportion to what a surface absorbs, instead of dimming them; the mean is the same.
@@ -45,7 +47,8 @@ pub(crate) struct Args {
     russian_roulette: bool,
 
     /// Threads that trace [default: one for each processor].
-    #[arg(long, value_name = "NUMBER")]
+    #[arg(long, value_name = "NUMBER", allow_negative_numbers = true)]
+    #[arg(value_parser = whole_checked_later(1..=rayon::max_num_threads()))]
     threads: Option<usize>,
 
     /// File for the shares of landings by bounce and surface, and of the power by bounce, as JSON.
@@ -193,10 +196,11 @@ fn print(report: &Report<'_>) -> Result<()> {
 
 /// 1000, 1_000 or 1e3.
 pub(super) fn parse_count(text: &str) -> Result<u32> {
-    let number: f64 = text.replace('_', "").parse().context("write it as 1000000 or 1e6")?;
-    if number.fract() != 0.0 || !(1.0..=f64::from(u32::MAX)).contains(&number) {
-        bail!("it is a whole number from 1 to {}", u32::MAX);
-    }
+    let number = text.replace('_', "").parse::<f64>().ok();
+    let whole = number.filter(|number| number.fract() == 0.0 && (1.0..=f64::from(u32::MAX)).contains(number));
+    let Some(number) = whole else {
+        bail!("give a whole number from 1 to {}, such as 1000000 or 1e6", u32::MAX);
+    };
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,

@@ -5,9 +5,11 @@ mod report;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Result, anyhow, bail};
-use varikernel::context::{self, DeviceChoice};
+use varikernel::context::DeviceChoice;
 use varikernel::gl::{self, DeviceInfo};
-use varikernel::image::{Attribute, Format, Picture, ReadOptions, read_counts, write_counts, write_picture};
+use varikernel::image::{
+    self, Attribute, Format, Picture, ReadOptions, read_counts, write_counts, write_picture,
+};
 use varikernel::measure::{Difference, RadiusSummary, total_photons};
 use varikernel::planner::{self, Census, Choice};
 use varikernel::settings::{Exactness, Settings, Storage};
@@ -16,7 +18,7 @@ use varikernel::{
 };
 
 use super::method_options::MethodOptions;
-use super::{Outcome, output};
+use super::{Outcome, device, output};
 use report::{MapReport, Report, Timing};
 
 /// Find, for each pixel, the smallest box that holds at least n photons.
@@ -50,7 +52,8 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE")]
     limited_mask: Option<PathBuf>,
 
-    /// Map of the pixels that need a radius: those that are 0 in it get 0, and cost next to nothing.
+    /// Map of the pixels that need a radius: those that are 0 in it get 0, and cost next to nothing. EXR, NPY, or any PNG,
+    /// 1 bit and colours too: black pixels are 0, and so are wholly transparent ones.
     #[arg(long, value_name = "FILE")]
     mask: Option<PathBuf>,
 
@@ -79,7 +82,7 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     let options = ReadOptions { channel: args.channel.as_deref(), ..ReadOptions::default() };
     let counts = read_counts(&args.map, &options)?;
     tracing::info!(map = %args.map.display(), size = %counts.size(), "read");
-    let gl = context::open(&args.device)?;
+    let gl = device::open(&args.device)?;
     tracing::info!(renderer = gl.info().renderer, "opened");
     check_fits(args, &counts, gl.info())?;
 
@@ -167,7 +170,7 @@ fn planned(args: &Args, settings: Settings, counts: &Image<u32>) -> Option<Choic
 
 /// A mask of the map's size, 1 where a radius is needed.
 fn read_mask(path: &Path, counts: &Image<u32>) -> Result<Image<u8>> {
-    let mask = read_counts(path, &ReadOptions::default())?;
+    let mask = image::read_mask(path)?;
     if mask.size() != counts.size() {
         bail!(
             "{}: the mask is {} x {} pixels, and the map {} x {}\nhelp: give one of the map's size",
@@ -178,7 +181,7 @@ fn read_mask(path: &Path, counts: &Image<u32>) -> Result<Image<u8>> {
             counts.size().y
         );
     }
-    Ok(mask.map(|value| u8::from(value != 0)))
+    Ok(mask)
 }
 
 /// An error of the library, with the option to change and the file at fault.
@@ -195,13 +198,16 @@ fn in_words_of_options(error: Error, map: &Path) -> anyhow::Error {
     }
 }
 
-/// Refuses outputs that can't be written, and ones that would replace the map or each other.
+/// Refuses outputs that can't be written, and ones that would replace the map, the mask or each other.
 fn check_files(args: &Args) -> Result<()> {
     for path in [Some(&args.output), args.limited_mask.as_ref()].into_iter().flatten() {
         Format::of(path)?;
     }
     let outputs =
         [("--output", Some(args.output.as_path())), ("--limited-mask", args.limited_mask.as_deref())];
+    if let Some(mask) = &args.mask {
+        output::check_files(("the mask", mask), &outputs)?;
+    }
     output::check_files(("the map", &args.map), &outputs)
 }
 

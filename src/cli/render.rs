@@ -10,7 +10,6 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use anyhow::{Result, bail};
-use varikernel::context;
 use varikernel::image::{Format, check_writable};
 use varikernel::render::{Progress, Renderer};
 use varikernel::settings::{DirectLight, Estimate, FirstBounce, PictureSettings, RadiusChoice};
@@ -20,8 +19,9 @@ pub(super) use source::{Source, in_words_of_options};
 
 use self::files::{attributes, write};
 use self::report::Report;
+use super::numbers::whole_checked_later;
 use super::photons::load;
-use super::{Outcome, output};
+use super::{Outcome, device, output};
 
 /// Render a scene by photons whose kernels fit their density.
 ///
@@ -51,7 +51,8 @@ pub(crate) struct Args {
     /// Make a reference: each pixel keeps its own photons only, averaged over this many seeds, saved as it goes. The seeds are
     /// those after --seed, so that it holds no photon of the picture that it is compared with. Nothing is spread, so that
     /// options about kernels are refused.
-    #[arg(long, value_name = "SEEDS", num_args = 0..=1, default_missing_value = "16")]
+    #[arg(long, value_name = "SEEDS", num_args = 0..=1, default_missing_value = "16", allow_negative_numbers = true)]
+    #[arg(value_parser = whole_checked_later(1..=u32::MAX))]
     #[arg(conflicts_with_all = ["gather", "radius", "first_bounce", "kernel", "min_photons", "max_radius"])]
     reference: Option<u32>,
 
@@ -92,7 +93,7 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     };
     settings.validate().and_then(|()| trace.validate()).map_err(in_words_of_options)?;
     let scene = load(&args.source.scene)?;
-    let gl = context::open(&args.source.device)?;
+    let gl = device::open(&args.source.device)?;
 
     if let Some(seeds) = args.reference {
         return reference::render(args, &gl, &scene, &settings, seeds);

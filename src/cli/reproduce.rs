@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context as _, Result, bail};
 use indicatif::{ProgressBar, ProgressStyle};
-use varikernel::context::{self, DeviceChoice};
+use varikernel::context::DeviceChoice;
 use varikernel::gl::Gl;
 use varikernel::image::{check_writable, write_atomically};
 use varikernel::measure;
@@ -14,7 +14,9 @@ use varikernel::measure::report::Report;
 use varikernel::measure::reproduce::{self, RunFile};
 use varikernel::measure::thesis::claims::{self, Group, Judged};
 
-use super::{Outcome, output, real_map};
+use super::numbers::duration;
+use super::saving::{Autosave, Resume, how_to_go_on};
+use super::{Outcome, device, output, real_map};
 
 /// Reproduce the thesis: its tables, figures and claims, timed and judged on this machine.
 ///
@@ -27,7 +29,7 @@ pub(crate) struct Args {
 
     /// Time for all timing runs, such as 90s or 10m; what does not fit says so in the tables [default: 4m, or 24h with
     /// --full].
-    #[arg(long, value_parser = humantime::parse_duration)]
+    #[arg(long, value_parser = duration, allow_negative_numbers = true)]
     budget: Option<Duration>,
 
     /// Take the thesis's 5 sets of 1000 iterations for every cell, as far as the budget goes.
@@ -59,7 +61,7 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     let run_json = args.output.join("run.json");
     check_writable(&run_json)?;
     let earlier = if args.resume { RunFile::load(&run_json)? } else { RunFile::default() };
-    let gl = context::open(&args.device)?;
+    let gl = device::open(&args.device)?;
     let cornell = real_map::read()?;
     let real = (&cornell, real_map::NAME);
 
@@ -75,20 +77,20 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     }
 
     let bar = progress_bar();
-    let mut saved = Instant::now();
+    let mut autosave = Autosave::new(Duration::from_secs(2));
     let run = reproduce::time(&gl, real, budget, args.full, (earlier, &run_json), &mut |run, progress| {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of 1000")]
         bar.set_position((1000.0 * progress.done) as u64);
         bar.set_prefix(format!("at most {} s left", progress.budget_left.as_secs() + 1));
         bar.set_message(format!("{}: {}", progress.part, progress.case));
-        if saved.elapsed() > Duration::from_secs(2) {
-            run.save(&run_json)?;
-            saved = Instant::now();
-        }
+        autosave.save_if_due(|| run.save(&run_json));
         Ok(())
     })?;
     bar.finish_and_clear();
-    run.save(&run_json)?;
+    let resume = Resume::Switch("--resume");
+    let missing = !run_json.exists();
+    run.save(&run_json)
+        .map_err(|error| how_to_go_on(error, if missing { &Resume::Anew } else { &resume }))?;
 
     let evidence = reproduce::with_timings(counted, &run);
     let judged = reproduce::judge(&evidence, &run, counted_seconds);
@@ -106,7 +108,8 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
         notes: &notes(&run),
     };
     for (name, text) in report.files() {
-        write_atomically(&args.output.join(name), |file| std::io::Write::write_all(file, text.as_bytes()))?;
+        write_atomically(&args.output.join(name), |file| std::io::Write::write_all(file, text.as_bytes()))
+            .map_err(|error| how_to_go_on(error, &resume))?;
     }
     if !args.json {
         print_summary(&judged, &args.output)?;

@@ -5,15 +5,17 @@ mod table;
 
 use std::fs;
 use std::path::PathBuf;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use anyhow::{Context as _, Result};
-use varikernel::context::{self, DeviceChoice};
+use varikernel::context::DeviceChoice;
 use varikernel::image::check_writable;
 use varikernel::measure::stress::{self, Extent, Report, StressSettings, Verdict};
 
+use super::numbers::whole;
+use super::saving::{Autosave, Resume, how_to_go_on};
 use super::share_bar::ShareBar;
-use super::{Outcome, output};
+use super::{Outcome, device, output};
 
 /// How often a renderer computes the same maps, to see that it always gives the same bits; and in a quick run.
 const TIMES: [u32; 2] = [100, 20];
@@ -55,7 +57,7 @@ pub(crate) struct Args {
     plant_fault: bool,
 
     /// Print the hashes of the maps that all renderers compute, so many times, and nothing else.
-    #[arg(long, hide = true, value_name = "TIMES")]
+    #[arg(long, hide = true, value_name = "TIMES", value_parser = whole(1..=u32::MAX), allow_negative_numbers = true)]
     bits: Option<u32>,
 }
 
@@ -71,7 +73,7 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     check_writable(&csv)?;
     let save = |report: &Report| report.save_csv(&csv).and_then(|()| report.save_json(&json));
 
-    let gl = context::open(&args.device)?;
+    let gl = device::open(&args.device)?;
     let extent = match (args.quick, args.full) {
         (true, _) => Extent::Quick,
         (_, true) => Extent::Full,
@@ -79,21 +81,18 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     };
     let settings = StressSettings { extent, planted: args.plant_fault };
     let bar = ShareBar::new();
-    let mut saved = Instant::now();
+    let mut autosave = Autosave::new(Duration::from_secs(5));
     let mut report = stress::run(&gl, settings, &mut |report, progress| {
         bar.show(MAPS_SHARE * progress.done, progress.row);
-        if saved.elapsed() > Duration::from_secs(5) {
-            save(report)?;
-            saved = Instant::now();
-        }
+        autosave.save_if_due(|| save(report));
         Ok(())
     })?;
-    save(&report)?;
+    autosave.save_if_due(|| save(&report));
     report.compare_renderers(renderers::all(&gl, TIMES[usize::from(args.quick)], &mut |name, done| {
         bar.show(MAPS_SHARE + (1.0 - MAPS_SHARE) * done, format!("the same maps: {name}"));
     })?);
     bar.finish();
-    save(&report)?;
+    save(&report).map_err(|error| how_to_go_on(error, &Resume::Anew))?;
 
     let judged = report.judge();
     if args.json {

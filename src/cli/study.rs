@@ -3,15 +3,16 @@
 use std::fs;
 use std::io::{ErrorKind, Write as _};
 use std::path::PathBuf;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use anyhow::{Context as _, Result};
-use varikernel::context::{self, DeviceChoice};
+use varikernel::context::DeviceChoice;
 use varikernel::image::{check_writable, write_atomically};
 use varikernel::measure::study::{self, Study, StudySettings};
 
+use super::saving::{Autosave, Resume, how_to_go_on};
 use super::share_bar::ShareBar;
-use super::{Outcome, output, real_map};
+use super::{Outcome, device, output, real_map};
 
 /// What was found so far is saved as often as this.
 const SAVE_EVERY: Duration = Duration::from_secs(10);
@@ -75,7 +76,7 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     fs::create_dir_all(&args.output)
         .with_context(|| format!("can't make the folder {}", args.output.display()))?;
     files.check()?;
-    let gl = context::open(&args.device)?;
+    let gl = device::open(&args.device)?;
     if let Some((earlier, path)) = &earlier {
         earlier.check_resumable(path, &Study::begin(&gl, &settings))?;
     }
@@ -83,13 +84,10 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
 
     let real = real_map::read()?;
     let bar = ShareBar::new();
-    let mut saved = Instant::now();
+    let mut autosave = Autosave::new(SAVE_EVERY);
     let study = study::run(&gl, &settings, (real_map::NAME, &real), earlier, &mut |study, progress| {
         bar.show(progress.done, progress.what.clone());
-        if saved.elapsed() > SAVE_EVERY {
-            study.save(&files.partial())?;
-            saved = Instant::now();
-        }
+        autosave.save_if_due(|| study.save(&files.partial()));
         Ok(())
     })?;
     bar.finish();
@@ -128,10 +126,16 @@ impl Files<'_> {
     }
 
     fn write(&self, study: &Study) -> Result<()> {
-        study.save(&self.folder.join("study.json"))?;
-        study.save_csv(&self.folder.join("study.csv"))?;
+        let saved = study.save(&self.folder.join("study.json"));
+        let resume =
+            if saved.is_ok() || self.partial().exists() { Resume::Switch("--resume") } else { Resume::Anew };
         let page = study.html(&output::command());
-        write_atomically(&self.folder.join("study.html"), |file| file.write_all(page.as_bytes()))?;
+        saved
+            .and_then(|()| study.save_csv(&self.folder.join("study.csv")))
+            .and_then(|()| {
+                write_atomically(&self.folder.join("study.html"), |file| file.write_all(page.as_bytes()))
+            })
+            .map_err(|error| how_to_go_on(error, &resume))?;
         match fs::remove_file(self.partial()) {
             Err(error) if error.kind() != ErrorKind::NotFound => Err(error)
                 .with_context(|| format!("can't remove {}, which is done with", self.partial().display())),

@@ -9,6 +9,7 @@ use varikernel::image::{Attribute, Format, ReadOptions, check_writable, write_co
 use varikernel::measure::total_photons;
 use varikernel::synth::{self, Kind};
 
+use super::numbers::{fraction, whole};
 use super::{Outcome, output};
 
 /// Make a seeded density map for tests.
@@ -26,11 +27,11 @@ pub(crate) struct Args {
     size: UVec2,
 
     /// Photons per pixel on average, fractions too; each kind has its usual one.
-    #[arg(long, value_name = "NUMBER", allow_negative_numbers = true)]
+    #[arg(long, value_name = "NUMBER", value_parser = fraction::<f64>("0.5"), allow_negative_numbers = true)]
     density: Option<f64>,
 
     /// A whole number; the same seed gives the same map.
-    #[arg(long, default_value_t = 1, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 1, value_parser = whole(0..=u64::MAX), allow_negative_numbers = true)]
     seed: u64,
 }
 

@@ -27,12 +27,13 @@ use anyhow::{Context as _, Result, bail};
 use varikernel::context::window;
 use varikernel::glam::UVec2;
 use varikernel::image::{Format, check_writable};
-use varikernel::settings::{Edges, Kernel, Method, Order, RadiusChoice};
+use varikernel::settings::{Edges, Kernel, MAX_RADIUS_LIMIT, Method, Order, RadiusChoice};
 
-use super::Outcome;
+use super::numbers::{fraction, whole};
 use super::photons::parse_count;
 use super::render::parse_radius;
 use super::synth::parse_size;
+use super::{Outcome, device};
 use app::{App, Wishes};
 use choices::Choices;
 use state::Beside;
@@ -70,11 +71,12 @@ pub(crate) struct Args {
     window: UVec2,
 
     /// n: photons that a kernel or box has to hold [default: 400 for scenes, 25 for maps].
-    #[arg(short = 'n', long, value_name = "N")]
+    #[arg(short = 'n', long, value_name = "N", value_parser = whole(1..=u32::MAX), allow_negative_numbers = true)]
     min_photons: Option<u32>,
 
     /// MR: the largest radius, in pixels [default: 64 for scenes, 32 for maps].
-    #[arg(short = 'r', long, value_name = "MR")]
+    #[arg(short = 'r', long, value_name = "MR", value_parser = whole(1..=MAX_RADIUS_LIMIT))]
+    #[arg(allow_negative_numbers = true)]
     max_radius: Option<u32>,
 
     /// Width of the kernels: `variable`, or `fixed:PIXELS` for the same everywhere.
@@ -86,15 +88,15 @@ pub(crate) struct Args {
     kernel: Kernel,
 
     /// Photons of each frame [default: as many as frames of 100 ms have time for].
-    #[arg(long, value_parser = parse_count, value_name = "NUMBER")]
+    #[arg(long, value_parser = parse_count, value_name = "NUMBER", allow_negative_numbers = true)]
     photons_per_frame: Option<u32>,
 
     /// A whole number; the same seed and photons of each frame give the same picture.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, value_parser = whole(0..=u64::MAX), allow_negative_numbers = true)]
     seed: u64,
 
     /// Brightness, in stops: each doubles the light [default: what suits the picture].
-    #[arg(long, value_name = "STOPS", allow_negative_numbers = true)]
+    #[arg(long, value_name = "STOPS", value_parser = fraction::<f32>("-1.5"), allow_negative_numbers = true)]
     exposure: Option<f32>,
 
     /// What is shown first.
@@ -106,7 +108,7 @@ pub(crate) struct Args {
     beside: Option<View>,
 
     /// Where the line between the two is, as a share of the picture's width.
-    #[arg(long, default_value_t = 0.5, value_parser = parse_share, value_name = "SHARE")]
+    #[arg(long, default_value_t = 0.5, value_parser = parse_share, value_name = "SHARE", allow_negative_numbers = true)]
     split: f32,
 
     /// A picture of the same size that errors are taken against: EXR or PNG.
@@ -114,7 +116,7 @@ pub(crate) struct Args {
     reference: Option<PathBuf>,
 
     /// Stop after so many frames' photons.
-    #[arg(long, value_name = "NUMBER")]
+    #[arg(long, value_name = "NUMBER", value_parser = whole(1..=u32::MAX), allow_negative_numbers = true)]
     frames: Option<u32>,
 
     /// Save the window as PNG after --frames, and quit.
@@ -138,6 +140,7 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
         check_source(Path::new(&choices.source))?;
     }
     let headless = "a window needs a display; `varikernel render` and `varikernel radius` make the same files without one";
+    device::check_for_crashes()?;
     let event_loop = window::event_loop().context(headless)?;
     let wishes = Wishes {
         choices,

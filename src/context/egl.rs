@@ -1,6 +1,7 @@
 //! EGL on a device, without a display server and without a surface.
 
 use std::ffi::{CStr, c_void};
+use std::path::PathBuf;
 
 use glutin::api::egl::context::PossiblyCurrentContext;
 use glutin::api::egl::device::Device as EglDevice;
@@ -10,7 +11,8 @@ use glutin::context::{ContextApi, ContextAttributesBuilder, GlProfile, Version};
 use glutin::display::GlDisplay as _;
 use glutin::prelude::*;
 
-use super::Opened;
+use super::refusal::{INSTALL, Refusal};
+use super::{Opened, environment, node, vendor};
 
 /// One EGL device.
 #[derive(Clone, Debug)]
@@ -18,35 +20,40 @@ pub(super) struct Device {
     /// Its place in eglQueryDevicesEXT.
     pub(super) index: usize,
     pub(super) description: String,
+    /// The file in /dev through which the driver reaches the card.
+    node: Option<PathBuf>,
     handle: EglDevice,
 }
 
 /// All EGL devices, hardware first.
-pub(super) fn devices() -> Result<Vec<Device>, String> {
+pub(super) fn devices() -> Result<Vec<Device>, Refusal> {
     let devices = EglDevice::query_devices().map_err(|error| match error.error_kind() {
-        glutin::error::ErrorKind::NotFound => "libEGL.so.1 is not installed".to_owned(),
-        _ => error.to_string(),
+        glutin::error::ErrorKind::NotFound => Refusal::new("libEGL.so.1 can't be loaded", INSTALL),
+        _ => Refusal::new(error.to_string(), INSTALL),
     })?;
     let mut devices: Vec<_> =
         devices.enumerate().map(|(index, device)| (is_software(&device), index, device)).collect();
     if devices.is_empty() {
-        return Err("EGL lists no device; is a driver installed?".to_owned());
+        let symptom = "EGL lists no device";
+        let broken = vendor::refusals(&environment::get).into_iter().next();
+        return Err(match broken {
+            Some(refusal) => refusal.after(symptom),
+            None => Refusal::new(format!("{symptom}; is a driver installed?"), INSTALL),
+        });
     }
     devices.sort_by_key(|&(software, index, _)| (software, index));
-    let describe = |device: &EglDevice| {
-        let names: Vec<_> = [device.vendor(), device.name()].into_iter().flatten().collect();
-        let node = device.drm_render_device_node_path().or_else(|| device.drm_device_node_path());
-        match (names.is_empty(), node) {
+    let device = |(_, index, handle): (bool, usize, EglDevice)| {
+        let names: Vec<_> = [handle.vendor(), handle.name()].into_iter().flatten().collect();
+        let node = handle.drm_render_device_node_path().or_else(|| handle.drm_device_node_path());
+        let description = match (names.is_empty(), node) {
             (false, _) => names.join(" "),
             (true, Some(node)) => format!("EGL device at {}", node.display()),
-            (true, None) if is_software(device) => "EGL software device".to_owned(),
+            (true, None) if is_software(&handle) => "EGL software device".to_owned(),
             (true, None) => "EGL device".to_owned(),
-        }
+        };
+        Device { index, description, node: node.map(PathBuf::from), handle }
     };
-    Ok(devices
-        .into_iter()
-        .map(|(_, index, device)| Device { index, description: describe(&device), handle: device })
-        .collect())
+    Ok(devices.into_iter().map(device).collect())
 }
 
 fn is_software(device: &EglDevice) -> bool {
@@ -54,7 +61,23 @@ fn is_software(device: &EglDevice) -> bool {
 }
 
 /// Makes a 3.3 core context on the device and makes it current.
-pub(super) fn open(device: &Device) -> Result<Opened, String> {
+pub(super) fn open(device: &Device) -> Result<Opened, Refusal> {
+    make_current(device).map_err(|symptom| match cause(device) {
+        Some(cause) => cause.after(&symptom),
+        None => environment::unexplained(&symptom),
+    })
+}
+
+/// Why nothing works on the device, as far as can be told from outside.
+fn cause(device: &Device) -> Option<Refusal> {
+    // NVIDIA's own driver reads none of Mesa's variables, and may do without the node.
+    let is_mesa = !device.description.contains("NVIDIA");
+    let of_node = || device.node.as_deref().and_then(node::refusal);
+    let of_environment = || environment::obstacle(&environment::get).filter(|_| is_mesa);
+    of_node().or_else(of_environment)
+}
+
+fn make_current(device: &Device) -> Result<Opened, String> {
     let step = |what: &'static str| move |error: glutin::error::Error| format!("{what}: {error}");
     // SAFETY: no raw display handle is passed, so there is none to be invalid.
     let display =

@@ -12,60 +12,26 @@ mod osmesa;
 #[cfg(feature = "window")]
 pub mod window;
 
+mod choice;
+mod environment;
+#[cfg(all(feature = "egl", not(target_vendor = "apple")))]
+mod node;
+mod refusal;
+mod tried;
+#[cfg(all(feature = "egl", not(target_vendor = "apple")))]
+mod vendor;
+
 use std::cell::Cell;
 use std::ffi::{CStr, c_void};
-use std::fmt;
 use std::rc::Rc;
-use std::str::FromStr;
+
+pub use choice::DeviceChoice;
+pub use environment::{driver_variables, unexplained};
+pub use refusal::Refusal;
+use tried::Tried;
 
 use crate::error::{Error, Result};
 use crate::gl::Gl;
-
-/// Which device to open.
-#[derive(Clone, Debug, PartialEq, Eq, Default)]
-pub enum DeviceChoice {
-    /// The first that works: hardware EGL devices, software EGL devices, OSMesa.
-    #[default]
-    Auto,
-    /// EGL devices only; of that index if one is given.
-    Egl(Option<usize>),
-    /// OSMesa only.
-    OsMesa,
-    /// The first whose renderer, vendor or device name contains this, whatever the case.
-    Named(String),
-}
-
-impl FromStr for DeviceChoice {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        match text {
-            "" => Err("a device name can't be empty; try auto".to_owned()),
-            "auto" => Ok(Self::Auto),
-            "egl" => Ok(Self::Egl(None)),
-            "osmesa" => Ok(Self::OsMesa),
-            _ => match text.strip_prefix("egl:") {
-                Some(index) => match index.parse() {
-                    Ok(index) => Ok(Self::Egl(Some(index))),
-                    Err(_) => Err(format!("\"{index}\" is not an index; `varikernel devices` lists them")),
-                },
-                None => Ok(Self::Named(text.to_owned())),
-            },
-        }
-    }
-}
-
-impl fmt::Display for DeviceChoice {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Auto => formatter.write_str("auto"),
-            Self::Egl(None) => formatter.write_str("egl"),
-            Self::Egl(Some(index)) => write!(formatter, "egl:{index}"),
-            Self::OsMesa => formatter.write_str("osmesa"),
-            Self::Named(name) => formatter.write_str(name),
-        }
-    }
-}
 
 /// A way to a context that may or may not work.
 #[derive(Debug)]
@@ -85,24 +51,39 @@ enum Kind {
     OsMesa,
 }
 
-/// Every way to a context on this machine, in the order in which `auto` tries them, and why whole platforms
-/// are missing.
+/// A platform, or a part of it, through which there is no way to a context.
+#[derive(Clone, Debug)]
+pub struct Missing {
+    /// How `--device` names the platform: `egl`, `osmesa`.
+    pub platform: DeviceChoice,
+    /// Why, and what helps.
+    pub refusal: Refusal,
+}
+
+/// Every way to a context on this machine, in the order in which `auto` tries them, and why platforms or vendors of them are
+/// missing.
 #[must_use]
-pub fn candidates() -> (Vec<Candidate>, Vec<String>) {
+pub fn candidates() -> (Vec<Candidate>, Vec<Missing>) {
     let (mut candidates, mut missing) = (Vec::new(), Vec::new());
     #[cfg(not(all(feature = "egl", not(target_vendor = "apple"))))]
-    missing.push("egl: not part of this build".to_owned());
+    missing.push(not_built(DeviceChoice::Egl(None), "egl"));
     #[cfg(all(feature = "egl", not(target_vendor = "apple")))]
     match egl::devices() {
-        Ok(devices) => candidates.extend(devices.into_iter().map(|device| Candidate {
-            choice: DeviceChoice::Egl(Some(device.index)),
-            description: device.description.clone(),
-            kind: Kind::Egl(device),
-        })),
-        Err(reason) => missing.push(format!("egl: {reason}")),
+        Ok(devices) => {
+            candidates.extend(devices.into_iter().map(|device| Candidate {
+                choice: DeviceChoice::Egl(Some(device.index)),
+                description: device.description.clone(),
+                kind: Kind::Egl(device),
+            }));
+            let broken = vendor::refusals(&environment::get);
+            missing.extend(
+                broken.into_iter().map(|refusal| Missing { platform: DeviceChoice::Egl(None), refusal }),
+            );
+        }
+        Err(refusal) => missing.push(Missing { platform: DeviceChoice::Egl(None), refusal }),
     }
     #[cfg(not(feature = "osmesa"))]
-    missing.push("osmesa: not part of this build".to_owned());
+    missing.push(not_built(DeviceChoice::OsMesa, "osmesa"));
     #[cfg(feature = "osmesa")]
     candidates.push(Candidate {
         choice: DeviceChoice::OsMesa,
@@ -112,7 +93,24 @@ pub fn candidates() -> (Vec<Candidate>, Vec<String>) {
     (candidates, missing)
 }
 
+#[cfg(not(all(feature = "egl", feature = "osmesa", not(target_vendor = "apple"))))]
+fn not_built(platform: DeviceChoice, feature: &str) -> Missing {
+    let remedy = format!("build with the feature {feature}, which Apple's systems can't have of EGL");
+    Missing { platform, refusal: Refusal::new("not part of this build", remedy) }
+}
+
 impl Candidate {
+    /// Whether the library that it needs is there: EGL lists what is, of OSMesa nobody knows before it is looked for.
+    #[must_use]
+    pub fn is_installed(&self) -> bool {
+        match &self.kind {
+            #[cfg(all(feature = "egl", not(target_vendor = "apple")))]
+            Kind::Egl(_) => true,
+            #[cfg(feature = "osmesa")]
+            Kind::OsMesa => osmesa::is_there(),
+        }
+    }
+
     /// Opens a context and makes it current on this thread.
     ///
     /// # Errors
@@ -135,13 +133,13 @@ impl Candidate {
         mut command: impl FnMut(&CStr, *const c_void) -> *const c_void,
     ) -> Result<Gl> {
         let guard = ThreadGuard::take()?;
-        let opened: Result<Opened, String> = match &self.kind {
+        let opened: Result<Opened, Refusal> = match &self.kind {
             #[cfg(all(feature = "egl", not(target_vendor = "apple")))]
             Kind::Egl(device) => egl::open(device),
             #[cfg(feature = "osmesa")]
             Kind::OsMesa => osmesa::open(),
         };
-        let Opened { context, loader } = opened.map_err(Error::NoContext)?;
+        let Opened { context, loader } = opened.map_err(Refusal::into_error)?;
         // SAFETY: the context was just made current on this thread, the loader is its own but for what the caller
         // vouches for, and `Gl` keeps it alive; `Gl` cannot leave the thread, and the guard keeps a second context of
         // ours from taking its place.
@@ -158,33 +156,26 @@ struct Opened {
 /// Opens the device that is asked for.
 ///
 /// # Errors
-/// [`Error::NoContext`] says what was tried, what each try answered, and how to install a renderer.
+/// [`Error::NoContext`] says what was tried, what each try answered, and what helps.
 pub fn open(choice: &DeviceChoice) -> Result<Gl> {
+    open_by(choice, &mut Candidate::open)
+}
+
+/// As [`open`], each candidate by `attempt`: a program that has to live through a driver's crash tries it elsewhere first.
+///
+/// # Errors
+/// As [`open`].
+pub fn open_by(choice: &DeviceChoice, attempt: &mut dyn FnMut(&Candidate) -> Result<Gl>) -> Result<Gl> {
     let (candidates, missing) = candidates();
-    let mut answers = missing;
-    for candidate in &candidates {
-        let wanted = match choice {
-            DeviceChoice::Auto | DeviceChoice::Named(_) => true,
-            DeviceChoice::Egl(None) => matches!(candidate.choice, DeviceChoice::Egl(_)),
-            DeviceChoice::Egl(Some(_)) | DeviceChoice::OsMesa => candidate.choice == *choice,
-        };
-        if !wanted {
-            continue;
-        }
-        match candidate.open() {
+    let mut tried = Tried::new(choice, &candidates, missing);
+    for candidate in candidates.iter().filter(|candidate| choice.covers(&candidate.choice)) {
+        match attempt(candidate) {
             Ok(gl) if is_named(&gl, candidate, choice) => return Ok(gl),
-            Ok(gl) => answers.push(format!("{}: is \"{}\"", candidate.choice, gl.info().renderer)),
-            Err(error) => answers.push(format!("{} ({}): {error}", candidate.choice, candidate.description)),
+            Ok(gl) => tried.other(candidate, &gl.info().renderer),
+            Err(error) => tried.refused(candidate, error.into()),
         }
     }
-    if answers.is_empty() {
-        let known: Vec<_> = candidates.iter().map(|candidate| candidate.choice.to_string()).collect();
-        answers.push(match known.as_slice() {
-            [] => "nothing: this was built without egl and osmesa".to_owned(),
-            known => format!("nothing: there is no such device; there are {}", known.join(", ")),
-        });
-    }
-    Err(Error::NoContext(no_context(choice, &answers)))
+    Err(tried.refusal().into_error())
 }
 
 fn is_named(gl: &Gl, candidate: &Candidate, choice: &DeviceChoice) -> bool {
@@ -193,20 +184,6 @@ fn is_named(gl: &Gl, candidate: &Candidate, choice: &DeviceChoice) -> bool {
     [&gl.info().renderer, &gl.info().vendor, &candidate.description]
         .iter()
         .any(|text| text.to_lowercase().contains(&name))
-}
-
-fn no_context(choice: &DeviceChoice, answers: &[String]) -> String {
-    let tried = answers.join("\n  ");
-    format!(
-        "no usable OpenGL 3.3 context for --device {choice}; tried:\n  {tried}\n\
-         help: install Mesa's software renderer, which needs no GPU and no display:\n  \
-         Debian, Ubuntu: sudo apt-get install libegl1 libgl1-mesa-dri\n  \
-         Fedora:         sudo dnf install mesa-libEGL mesa-dri-drivers\n  \
-         Arch:           sudo pacman -S mesa libglvnd\n  \
-         (OSMesa: libosmesa6 or mesa-libOSMesa, up to Mesa 25.0. A GPU in a container\n  \
-         needs its driver's EGL library and vendor JSON: for NVIDIA,\n  \
-         NVIDIA_DRIVER_CAPABILITIES must include \"graphics\".)"
-    )
 }
 
 /// Held by the one context of a thread that was opened here.
@@ -223,9 +200,10 @@ impl ThreadGuard {
         }
         let open = OPEN.with(Rc::clone);
         if open.replace(true) {
-            return Err(Error::NoContext(
-                "a context is already open on this thread; drop everything made from it first".to_owned(),
-            ));
+            return Err(Error::NoContext {
+                reason: "a context is already open on this thread".to_owned(),
+                remedy: "drop everything made from it first, or use another thread".to_owned(),
+            });
         }
         Ok(Self { open })
     }

@@ -5,7 +5,8 @@ use std::rc::Rc;
 
 use libloading::Library;
 
-use super::Opened;
+use super::refusal::Refusal;
+use super::{Opened, environment};
 
 const NAMES: [&str; 3] = ["libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.so"];
 
@@ -14,8 +15,10 @@ const ATTRIBUTES: [c_int; 12] = [0x22, 0x1908, 0x30, 24, 0x33, 0x34, 0x36, 3, 0x
 
 const GL_UNSIGNED_BYTE: u32 = 0x1401;
 
-/// The values of `GALLIUM_DRIVER` under which OSMesa makes a context; under others it reads through a null pointer.
-const GALLIUM_DRIVERS: [&str; 3] = ["", "llvmpipe", "softpipe"];
+/// How to get the library, and what serves instead.
+const REMEDY: &str = "use EGL (--device egl), which has the same renderer; OSMesa was removed from Mesa in 25.1, up to then:\n  \
+    Debian, Ubuntu: sudo apt-get install libosmesa6\n  \
+    Fedora:         sudo dnf install mesa-libOSMesa";
 
 type CreateContextAttribs = unsafe extern "C" fn(*const c_int, *mut c_void) -> *mut c_void;
 type MakeCurrent = unsafe extern "C" fn(*mut c_void, *mut c_void, u32, c_int, c_int) -> u8;
@@ -39,16 +42,21 @@ impl Drop for OsMesa {
 }
 
 /// Makes a 3.3 core context and makes it current.
-pub(super) fn open() -> Result<Opened, String> {
-    if let Some(driver) = std::env::var_os("GALLIUM_DRIVER")
-        && !GALLIUM_DRIVERS.iter().any(|known| driver == *known)
-    {
-        return Err(format!(
-            "the environment sets GALLIUM_DRIVER to {}, and OSMesa knows llvmpipe and softpipe",
-            driver.display()
-        ));
+pub(super) fn open() -> Result<Opened, Refusal> {
+    let library = Rc::new(load().map_err(|reason| Refusal::new(reason, REMEDY))?);
+    // Where less than 3.3 is to be had, OSMesa reads through a null pointer.
+    if let Some(refusal) = environment::obstacle_of_osmesa(&environment::get) {
+        return Err(refusal);
     }
-    let library = Rc::new(load()?);
+    make_current(library).map_err(|symptom| environment::unexplained(&symptom))
+}
+
+/// Whether the library can be loaded.
+pub(super) fn is_there() -> bool {
+    load().is_ok()
+}
+
+fn make_current(library: Rc<Library>) -> Result<Opened, String> {
     // SAFETY: the names and types are those of GL/osmesa.h; the library is kept as long as the functions.
     let (create, make_current, get_proc_address, destroy) = unsafe {
         (

@@ -4,7 +4,7 @@ use glow::HasContext as _;
 
 /// What a context says of itself.
 #[derive(Clone, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct DeviceInfo {
     /// GL_RENDERER.
     pub renderer: String,

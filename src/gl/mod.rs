@@ -307,13 +307,13 @@ fn check_current(loader: &mut impl FnMut(&CStr) -> *const c_void) -> Result<()> 
     type GetString = unsafe extern "system" fn(name: u32) -> *const u8;
     let get_string = loader(c"glGetString");
     if get_string.is_null() {
-        return Err(Error::NoContext("the loader does not know glGetString".to_owned()));
+        return Err(Error::no_current_context("the loader does not know glGetString"));
     }
     // SAFETY: the caller of `from_loader` vouches that this is the address of glGetString.
     let get_string = unsafe { std::mem::transmute::<*const c_void, GetString>(get_string) };
     // SAFETY: glGetString takes any value; without a context it returns null.
     if unsafe { get_string(glow::VERSION) }.is_null() {
-        return Err(Error::NoContext("no OpenGL context is current on this thread".to_owned()));
+        return Err(Error::no_current_context("no OpenGL context is current on this thread"));
     }
     Ok(())
 }

@@ -3,13 +3,12 @@
 use std::io::{BufRead, Seek};
 use std::path::Path;
 
-use ::exr::prelude::{ReadChannels as _, ReadLayers as _};
 use glam::UVec2;
 use image::{ImageFormat, ImageReader, Limits};
 
 use super::counts::{Problem, ReadOptions};
 use super::files::{Format, check_signature, open_file};
-use super::{Image, exr};
+use super::{Image, exr, png};
 use crate::{Error, Result};
 
 /// A picture as its file holds it. Row 0 is the first row of the file.
@@ -44,35 +43,16 @@ pub fn read_colours(path: &Path) -> Result<Colours> {
     }
     let (mut file, length) = open_file(path)?;
     let found = check_signature(&mut file, format).and_then(|()| match format {
-        Format::Exr => read_exr(file, length).map(Colours::Radiance),
-        _ => read_png(file).map(Colours::Encoded),
+        Format::Exr => exr::read_rgb(file, length, &ReadOptions::default()).map(Colours::Radiance),
+        _ => read_png(file, length).map(Colours::Encoded),
     });
     found.map_err(|problem| Error::file(path, problem.what, problem.remedy))
 }
 
-fn read_exr(mut file: impl BufRead + Seek, length: u64) -> Result<Image<[f32; 3]>, Problem> {
-    exr::check_sizes(&mut file, length, &ReadOptions::default())?;
-    let image = ::exr::prelude::read()
-        .no_deep_data()
-        .largest_resolution_level()
-        .rgb_channels(
-            |size, _| (size.width(), vec![[0.0_f32; 3]; size.area()]),
-            |(width, pixels), at, (red, green, blue): (f32, f32, f32)| {
-                pixels[at.y() * *width + at.x()] = [red, green, blue];
-            },
-        )
-        .first_valid_layer()
-        .all_attributes()
-        .from_buffered(file)
-        .map_err(exr::problem)?;
-    let sides = image.layer_data.size;
-    let (_, pixels) = image.layer_data.channel_data.pixels;
-    let whole = |side: usize| u32::try_from(side).unwrap_or_else(|_| unreachable!("sizes were checked"));
-    Ok(Image::from_values(UVec2::new(whole(sides.width()), whole(sides.height())), pixels))
-}
-
-fn read_png(file: impl BufRead + Seek) -> Result<Image<[u8; 3]>, Problem> {
+fn read_png(mut file: impl BufRead + Seek, length: u64) -> Result<Image<[u8; 3]>, Problem> {
     let options = ReadOptions::default();
+    let unfinished = |error: std::io::Error| Problem::damaged(format!("truncated or damaged: {error}"));
+    png::check_end(&mut file, length).and_then(|()| file.rewind()).map_err(unfinished)?;
     let mut reader = ImageReader::with_format(file, ImageFormat::Png);
     let mut limits = Limits::default();
     (limits.max_image_width, limits.max_image_height) = (Some(options.max_side), Some(options.max_side));

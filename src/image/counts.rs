@@ -2,6 +2,7 @@
 
 use std::fmt::Debug;
 
+use exr::prelude::f16;
 use glam::UVec2;
 
 use super::Image;
@@ -116,10 +117,28 @@ impl Refusal {
     }
 }
 
+/// What the samples of a file stand for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Meaning {
+    /// Photons: whole numbers.
+    Counts,
+    /// Yes or no: 0 is no, any other number is yes, and is read as 1.
+    Mask,
+}
+
 /// A sample of a file.
 pub(super) trait Sample: Copy + Debug {
     /// The count that it stands for, exactly.
     fn count(self) -> Result<u32, Refusal>;
+}
+
+/// What a sample says as part of a mask. Numbers that are no counts are not 0, and so say yes.
+fn yes_or_no(sample: impl Sample) -> Result<u32, Refusal> {
+    match sample.count() {
+        Ok(count) => Ok(u32::from(count != 0)),
+        Err(Refusal::NotANumber) => Err(Refusal::NotANumber),
+        Err(_) => Ok(1),
+    }
 }
 
 macro_rules! whole_samples {
@@ -164,9 +183,16 @@ impl Sample for f32 {
     }
 }
 
+impl Sample for f16 {
+    fn count(self) -> Result<u32, Refusal> {
+        self.to_f64().count()
+    }
+}
+
 /// Collects the counts of one map, in any order, and remembers the first sample that is none.
 pub(super) struct Counts {
     size: UVec2,
+    meaning: Meaning,
     values: Vec<u32>,
     refused: u64,
     /// Index, value and reason of the refused sample that comes first in the image.
@@ -175,7 +201,7 @@ pub(super) struct Counts {
 
 impl Counts {
     /// Zero everywhere; `size` has passed [`ReadOptions::check_size`].
-    pub(super) fn new(size: UVec2) -> Result<Self, Problem> {
+    pub(super) fn new(size: UVec2, meaning: Meaning) -> Result<Self, Problem> {
         let pixels = size.x as usize * size.y as usize;
         let mut values = Vec::new();
         values.try_reserve_exact(pixels).map_err(|_| {
@@ -185,12 +211,16 @@ impl Counts {
             )
         })?;
         values.resize(pixels, 0);
-        Ok(Self { size, values, refused: 0, first: None })
+        Ok(Self { size, meaning, values, refused: 0, first: None })
     }
 
     /// Takes the sample of the pixel `index`, counted row after row.
     pub(super) fn put(&mut self, index: usize, sample: impl Sample) {
-        match sample.count() {
+        let found = match self.meaning {
+            Meaning::Counts => sample.count(),
+            Meaning::Mask => yes_or_no(sample),
+        };
+        match found {
             Ok(count) => self.values[index] = count,
             Err(reason) => {
                 self.refused += 1;
@@ -207,14 +237,20 @@ impl Counts {
             return Ok(Image::from_values(self.size, self.values));
         };
         let (x, y) = (index % self.size.x as usize, index / self.size.x as usize);
+        let (what, remedy) = match self.meaning {
+            Meaning::Counts => ("are not counts", reason.remedy()),
+            Meaning::Mask => {
+                ("say neither yes nor no", "give 0 where no radius is needed, else another number")
+            }
+        };
         Err(Problem::new(
             format!(
-                "the value at ({x}, {y}) is {value}, {}; {} of {} pixels are not counts",
+                "the value at ({x}, {y}) is {value}, {}; {} of {} pixels {what}",
                 reason.what(),
                 self.refused,
                 self.values.len()
             ),
-            reason.remedy(),
+            remedy,
         ))
     }
 }

@@ -2,12 +2,12 @@
 
 use std::fmt;
 use std::fs::{self, File};
-use std::io::{BufReader, ErrorKind, Read, Seek};
+use std::io::{BufRead, BufReader, Cursor, ErrorKind, Read as _, Seek};
 use std::path::Path;
 
 use super::atomic::write_atomically;
 use super::attribute::Attribute;
-use super::counts::{Problem, ReadOptions};
+use super::counts::{Meaning, Problem, ReadOptions};
 use super::picture::{self, Picture};
 use super::{Image, exr, npy, png};
 use crate::{Error, Result};
@@ -73,24 +73,64 @@ impl fmt::Display for Format {
     }
 }
 
-/// Reads a map of counts: one channel of f16, f32 or u32 from EXR, a 2-D array of bool, integers, f32 or f64 from
+/// Reads a map of counts: one channel of f16, f32 or u32 from EXR, a 2-D array of bool, integers, f16, f32 or f64 from
 /// NPY, 8- or 16-bit grey levels from PNG. The first row of the file is row 0.
 ///
-/// Sizes are checked before memory is taken for pixels.
+/// Sizes are checked before memory is taken for pixels. What follows the end of the image in a file is not read.
 ///
 /// # Errors
 /// If there is no such file, it is not what its extension says, it is truncated or damaged, it holds several
 /// channels and none is chosen, it is empty or larger than `options` allow, or a value is not a whole number from
 /// 0 to 4294967295.
 pub fn read_counts(path: &Path, options: &ReadOptions<'_>) -> Result<Image<u32>> {
+    Format::of(path)?;
+    let (file, length) = open_file(path)?;
+    decode(path, file, length, options)
+}
+
+/// Reads a map of counts from the bytes of a file, as [`read_counts`] does from the file itself; `name` tells the format, and
+/// stands in errors.
+///
+/// # Errors
+/// As [`read_counts`].
+pub fn read_counts_of(name: &Path, bytes: &[u8], options: &ReadOptions<'_>) -> Result<Image<u32>> {
+    decode(name, Cursor::new(bytes), bytes.len() as u64, options)
+}
+
+fn decode(
+    path: &Path,
+    mut file: impl BufRead + Seek,
+    length: u64,
+    options: &ReadOptions<'_>,
+) -> Result<Image<u32>> {
     let format = Format::of(path)?;
-    let (mut file, length) = open_file(path)?;
     let found = check_signature(&mut file, format).and_then(|()| match format {
         Format::Exr => exr::read(file, length, options),
-        Format::Npy => npy::read(file, length, options),
+        Format::Npy => npy::read(file, length, options, Meaning::Counts),
         Format::Png => png::read(file, length, options),
     });
     found.map_err(|problem| file_error(path, problem))
+}
+
+/// Reads a mask: 1 for each pixel that is set in the file, else 0. Row 0 is the first row of the file.
+///
+/// A pixel is set where it is not 0: in an NPY of any kind that [`read_counts`] takes, and in the channels of the first layer of
+/// an EXR, or where it is not black, in a PNG of any kind, 1 bit, colours and palettes too. Where there is alpha (`A` in
+/// an EXR), pixels that are wholly transparent are not set. Values need not be counts: fractions and negative numbers set.
+///
+/// # Errors
+/// As [`read_counts`] for files; and if a value is not a number.
+pub fn read_mask(path: &Path) -> Result<Image<u8>> {
+    let format = Format::of(path)?;
+    let (mut file, length) = open_file(path)?;
+    let options = &ReadOptions::default();
+    let found = check_signature(&mut file, format).and_then(|()| match format {
+        Format::Exr => exr::read_mask(file, length, options),
+        Format::Npy => npy::read(file, length, options, Meaning::Mask),
+        Format::Png => png::read_mask(file, length, options),
+    });
+    let mask = found.map_err(|problem| file_error(path, problem))?;
+    Ok(mask.map(|value| u8::from(value != 0)))
 }
 
 /// Writes counts: to EXR as one u32 channel named `channel` with `attributes`, to NPY as a 2-D array of u32, to PNG
@@ -161,7 +201,7 @@ pub(crate) fn open_file(path: &Path) -> Result<(BufReader<File>, u64)> {
 }
 
 /// Leaves the file at its start.
-pub(super) fn check_signature(file: &mut BufReader<File>, format: Format) -> Result<(), Problem> {
+pub(super) fn check_signature(file: &mut (impl BufRead + Seek), format: Format) -> Result<(), Problem> {
     let unreadable = |error| Problem::damaged(format!("could not be read: {error}"));
     let mut start = Vec::new();
     file.by_ref().take(8).read_to_end(&mut start).map_err(unreadable)?;

@@ -26,11 +26,13 @@ mod picture;
 mod png;
 #[cfg(feature = "render")]
 mod sheet;
+#[cfg(feature = "files")]
+mod temporary;
 #[cfg(feature = "render")]
 mod tone;
 
 #[cfg(feature = "files")]
-pub use atomic::{check_writable, write_atomically};
+pub use atomic::{check_writable, output_place, write_atomically};
 #[cfg(feature = "files")]
 pub use attribute::{Attribute, AttributeValue};
 #[cfg(feature = "files")]
@@ -42,7 +44,7 @@ pub use counts::ReadOptions;
 #[cfg(feature = "scene")]
 pub(crate) use files::open_file;
 #[cfg(feature = "files")]
-pub use files::{Format, read_counts, write_counts, write_picture};
+pub use files::{Format, read_counts, read_counts_of, read_mask, write_counts, write_picture};
 #[cfg(feature = "render")]
 pub use layers::{LayerFile, write_colours};
 #[cfg(feature = "files")]
@@ -51,6 +53,8 @@ pub use picture::Picture;
 pub use picture::picture_of;
 #[cfg(feature = "render")]
 pub use sheet::{Tile, contact_sheet};
+#[cfg(feature = "files")]
+pub use temporary::{Discarded, discard_unfinished_files};
 #[cfg(feature = "render")]
 pub use tone::ToneMap;
 

@@ -6,10 +6,11 @@
 
 use std::io::{self, ErrorKind, Read, Write};
 
+use exr::prelude::f16;
 use glam::UVec2;
 
 use super::Image;
-use super::counts::{Counts, Problem, ReadOptions, Sample};
+use super::counts::{Counts, Meaning, Problem, ReadOptions, Sample};
 
 /// The first bytes of every NPY file.
 pub(super) const SIGNATURE: &[u8] = b"\x93NUMPY";
@@ -17,7 +18,7 @@ pub(super) const SIGNATURE: &[u8] = b"\x93NUMPY";
 /// The longest header that is read, in bytes; NumPy itself stops at 10000.
 const MAX_HEADER: u64 = 1 << 16;
 
-const DTYPES: &str = "save it as one of u1, u2, u4, u8, i1, i2, i4, i8, f4 and f8, for example numpy.save(path, a.astype(\"u4\"))";
+const DTYPES: &str = "save it as one of u1, u2, u4, u8, i1, i2, i4, i8, f2, f4 and f8, for example numpy.save(path, a.astype(\"u4\"))";
 
 /// What the header says.
 struct Header {
@@ -34,6 +35,7 @@ pub(super) fn read(
     mut file: impl Read,
     length: u64,
     options: &ReadOptions<'_>,
+    meaning: Meaning,
 ) -> Result<Image<u32>, Problem> {
     options.refuse_channel("an NPY file")?;
     let (header, header_bytes) = read_header(&mut file, length)?;
@@ -53,13 +55,9 @@ pub(super) fn read(
             "truncated: the header claims {claimed} bytes of data, the file has {present}"
         )));
     }
-    if present > claimed {
-        return Err(Problem::damaged(format!(
-            "too long: the header claims {claimed} bytes of data, the file has {present}"
-        )));
-    }
+    // More is no fault: NumPy keeps arrays one after the other in a file, and reads the first.
 
-    let mut counts = Counts::new(size)?;
+    let mut counts = Counts::new(size, meaning)?;
     read_samples(file, &header, size, &mut counts)
         .map_err(|error| Problem::damaged(format!("the samples could not be read: {error}")))?;
     counts.finish()
@@ -117,7 +115,8 @@ fn parse_header(text: &str) -> Result<Header, Problem> {
         .split(',')
         .map(str::trim)
         .filter(|side| !side.is_empty())
-        .map(|side| side.parse().map_err(|_| no_entry("shape")))
+        // Python 2 marks its long numbers: 41L.
+        .map(|side| side.strip_suffix(['L', 'l']).unwrap_or(side).parse().map_err(|_| no_entry("shape")))
         .collect::<Result<_, _>>()?;
     Ok(Header { kind, sample_bytes, big_endian, fortran_order, shape })
 }
@@ -141,7 +140,9 @@ fn parse_dtype(value: &str) -> Result<(char, u64, bool), Problem> {
     if value.starts_with('[') {
         return Err(Problem::new("the dtype is structured, not one number a pixel", DTYPES));
     }
-    let quoted = value.get(1..).and_then(|rest| rest.split_once(['\'', '"']));
+    // Python 2 marks its texts in Unicode, and may mark the others: u'<u4', b'<u4'.
+    let quoted = value.trim_start_matches(['u', 'b']).strip_prefix(['\'', '"']);
+    let quoted = quoted.and_then(|rest| rest.split_once(['\'', '"']));
     let (dtype, _) = quoted.ok_or_else(|| no_entry("descr"))?;
     let wrong = || Problem::new(format!("the dtype \"{dtype}\" is not one of counts"), DTYPES);
 
@@ -154,7 +155,7 @@ fn parse_dtype(value: &str) -> Result<(char, u64, bool), Problem> {
     let kind = letters.next().ok_or_else(wrong)?;
     let sample_bytes = letters.as_str().parse().map_err(|_| wrong())?;
     match (kind, sample_bytes) {
-        ('b', 1) | ('u' | 'i', 1 | 2 | 4 | 8) | ('f', 4 | 8) => Ok((kind, sample_bytes, big_endian)),
+        ('b', 1) | ('u' | 'i', 1 | 2 | 4 | 8) | ('f', 2 | 4 | 8) => Ok((kind, sample_bytes, big_endian)),
         _ => Err(wrong()),
     }
 }
@@ -165,6 +166,7 @@ fn read_samples(file: impl Read, header: &Header, size: UVec2, counts: &mut Coun
         ('i', 2) => fill(file, header, size, counts, i16::from_le_bytes),
         ('i', 4) => fill(file, header, size, counts, i32::from_le_bytes),
         ('i', 8) => fill(file, header, size, counts, i64::from_le_bytes),
+        ('f', 2) => fill(file, header, size, counts, f16::from_le_bytes),
         ('f', 4) => fill(file, header, size, counts, f32::from_le_bytes),
         ('f', 8) => fill(file, header, size, counts, f64::from_le_bytes),
         (_, 1) => fill(file, header, size, counts, u8::from_le_bytes),

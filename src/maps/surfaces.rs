@@ -118,6 +118,15 @@ impl SurfaceMaps {
         Self::read(self.albedo.as_ref())
     }
 
+    /// Replaces the albedo of our own surfaces.
+    #[cfg(feature = "render")]
+    pub(crate) fn set_albedo(&mut self, albedo: &Image<[f32; 4]>) -> Result<()> {
+        let gl = self.albedo().gl();
+        let _state = StateGuard::new(gl);
+        self.albedo().upload(albedo);
+        gl.check("uploading reflectances")
+    }
+
     fn read(texture: Option<&Texture>) -> Result<Image<[f32; 4]>> {
         let readable = texture.filter(|texture| texture.format() == TextureFormat::Rgba32Float);
         let Some(texture) = readable else {

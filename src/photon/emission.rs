@@ -1,16 +1,18 @@
 //! Where photons start.
 //!
 //! Each light gets photons by its share of the power, so that all photons carry about the same. Their starting points
-//! (for point lights: directions) are stratified: one in each cell of equal area, at random inside it.
+//! (for point lights: directions) are stratified: one in each cell of equal area, at random inside it. A light that is far from
+//! everything else sends its photons towards that alone, each with its part of the light that goes there.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
 
 use super::TraceSettings;
+use super::aim::{Aim, Surroundings};
 use super::random::{Purpose, Stream};
-use crate::scene::{LightShape, Scene, area, cap_height};
+use crate::scene::{AreaLight, LightSample, LightShape, Scene, cap_height};
 use crate::{Error, Result};
 
 /// By how much a photon starts before its light, as a share of the coordinates: twice what f32 loses.
@@ -24,7 +26,7 @@ pub struct EmittedPhoton {
     pub origin: Vec3,
     /// Of length 1.
     pub direction: Vec3,
-    /// Linear RGB; all photons together carry the power of all lights.
+    /// Linear RGB; all photons together carry the power of all lights, of a far one what goes towards the rest of the scene.
     pub power: Vec3,
     /// Its number, which decides its further way together with the seed.
     pub id: u32,
@@ -33,6 +35,7 @@ pub struct EmittedPhoton {
 /// What leaves the lights of a scene.
 #[derive(Clone, Debug)]
 pub struct Emission<'a> {
+    scene: &'a Scene,
     parts: Vec<Part<'a>>,
     flux: DVec3,
     settings: TraceSettings,
@@ -44,56 +47,43 @@ struct Part<'a> {
     shape: &'a LightShape,
     first: u32,
     count: u32,
-    power: Vec3,
-    /// For an area light, the areas of the triangles up to each, as shares of all.
-    cumulative: Vec<f64>,
+    /// What a far light's photons are aimed at.
+    aim: Option<Aim>,
 }
 
 impl<'a> Emission<'a> {
-    /// Shares `settings.photons` among the lights of the scene.
+    /// Shares `settings.photons` among the lights of the scene by their power; each gets at least one, however weak it is.
     ///
     /// # Errors
-    /// [`Error::Setting`] for settings that are not possible, if no light shines, if there are too few photons for each
-    /// light to get one, or if the power of a photon does not fit f32.
+    /// [`Error::NoLight`]; [`Error::Setting`] for settings that are not possible, if there are fewer photons than lights, or if
+    /// the power of a photon does not fit f32.
     pub fn new(scene: &'a Scene, settings: &TraceSettings) -> Result<Self> {
         settings.validate()?;
         let refuse = |reason: String| {
             Err(Error::Setting { name: "photons", value: settings.photons.to_string(), reason })
         };
         let shining: Vec<_> = scene.lights().iter().filter(|light| light.flux() != DVec3::ZERO).collect();
-        let weights = shining.iter().map(|light| light.flux().element_sum());
-        let total: f64 = weights.clone().sum();
         if shining.is_empty() {
-            return refuse("the scene has no light that shines".to_owned());
+            return Err(Error::NoLight);
         }
-        let (mut parts, mut sum, mut first) = (Vec::new(), 0.0, 0);
-        for (light, weight) in shining.iter().zip(weights) {
-            sum += weight;
-            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 0 to the u32")]
-            let end = (sum / total * f64::from(settings.photons)).round() as u32;
-            let end = if parts.len() + 1 == shining.len() { settings.photons } else { end };
-            let count = end.saturating_sub(first);
-            let name = &light.name;
-            if count == 0 {
-                return refuse(format!(
-                    "too few for the light \"{name}\", whose share of the power is small"
-                ));
+        let weights: Vec<f64> = shining.iter().map(|light| light.flux().element_sum()).collect();
+        let Some(counts) = counts(&weights, settings.photons) else {
+            let lights = shining.len();
+            return refuse(format!(
+                "each of the {lights} lights takes at least one; ask for {lights} or more"
+            ));
+        };
+        let surroundings = Surroundings::new(scene);
+        let (mut parts, mut first) = (Vec::new(), 0);
+        for (light, count) in shining.iter().zip(counts) {
+            if !(light.flux() / f64::from(count)).as_vec3().is_finite() {
+                return refuse(format!("the light \"{}\" is brighter than f32 can tell", light.name));
             }
-            let power = (light.flux() / f64::from(count)).as_vec3();
-            if !power.is_finite() {
-                return refuse(format!("the light \"{name}\" is brighter than f32 can tell"));
-            }
-            parts.push(Part {
-                shape: &light.shape,
-                first,
-                count,
-                power,
-                cumulative: cumulative(&light.shape),
-            });
-            first = end;
+            parts.push(Part { shape: &light.shape, first, count, aim: surroundings.aim(light) });
+            first += count;
         }
         let flux = shining.iter().map(|light| light.flux()).sum();
-        Ok(Self { parts, flux, settings: *settings })
+        Ok(Self { scene, parts, flux, settings: *settings })
     }
 
     /// The power of all lights, linear RGB.
@@ -114,6 +104,12 @@ impl<'a> Emission<'a> {
         self.parts.partition_point(|part| part.first <= id) - 1
     }
 
+    /// Whether the photons of one of the lights that shine start where they come near the scene, and not on the light.
+    #[cfg(feature = "render")]
+    pub(crate) fn is_aimed(&self, light: usize) -> bool {
+        self.parts[light].aim.is_some()
+    }
+
     /// The photon of a number from 0 to less than `settings().photons`.
     ///
     /// # Panics
@@ -123,17 +119,105 @@ impl<'a> Emission<'a> {
         assert!(id < self.settings.photons, "photon {id} of {}", self.settings.photons);
         let part = &self.parts[self.parts.partition_point(|part| part.first <= id) - 1];
         let mut random = Stream::new(self.settings.seed, id, Purpose::Emission);
-        let [u, v] = stratum(id - part.first, part.count, &mut random);
-        let (origin, direction) = match part.shape {
-            LightShape::Area { triangles, .. } => {
-                leave_area(triangles, &part.cumulative, [u, v], &mut random)
-            }
-            LightShape::Point { position, direction, half_angle, .. } => {
-                let cos = 1.0 - u * cap_height(*half_angle);
-                (*position, around(direction.as_dvec3(), cos, v).as_vec3())
+        let uv = stratum(id - part.first, part.count, &mut random);
+        let leaving = match part.shape {
+            LightShape::Area(light) => leave_area(light, part.aim.as_ref(), uv, &mut random),
+            LightShape::Point { position, direction, half_angle, intensity } => {
+                let cone = Cone { axis: direction.as_dvec3(), height: cap_height(*half_angle) };
+                leave_point(position.as_dvec3(), &cone, intensity.as_dvec3(), part.aim.as_ref(), uv)
             }
         };
-        EmittedPhoton { origin, direction, power: part.power, id }
+        let origin = match &part.aim {
+            Some(aim) => aim.near(self.scene, &leaving),
+            None => leaving.origin,
+        };
+        let power = (leaving.power / f64::from(part.count)).as_vec3();
+        EmittedPhoton { origin: origin.as_vec3(), direction: leaving.direction.as_vec3(), power, id }
+    }
+}
+
+/// How many photons each light gets: by its weight, and at least one; nothing if there are too few.
+fn counts(weights: &[f64], photons: u32) -> Option<Vec<u32>> {
+    if weights.len() as u64 > u64::from(photons) {
+        return None;
+    }
+    let total: f64 = weights.iter().sum();
+    let (mut sum, mut first) = (0.0, 0);
+    let by_weight = weights.iter().enumerate().map(|(index, weight)| {
+        sum += weight;
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 0 to the u32")]
+        let end = (sum / total * f64::from(photons)).round() as u32;
+        let end = if index + 1 == weights.len() { photons } else { end };
+        let count = end.saturating_sub(first);
+        first += count;
+        count
+    });
+    let mut counts: Vec<u32> = by_weight.collect();
+    let mut missing = 0;
+    for count in counts.iter_mut().filter(|count| **count == 0) {
+        *count = 1;
+        missing += 1;
+    }
+    // The strong ones give what the weak ones lack.
+    let mut order: Vec<usize> = (0..counts.len()).collect();
+    order.sort_by_key(|&index| std::cmp::Reverse(counts[index]));
+    for index in order {
+        let given = missing.min(counts[index] - 1);
+        counts[index] -= given;
+        missing -= given;
+    }
+    Some(counts)
+}
+
+/// A photon on its light.
+pub(super) struct Leaving {
+    pub(super) origin: DVec3,
+    pub(super) direction: DVec3,
+    /// Times the number of the light's photons.
+    power: DVec3,
+}
+
+/// Directions around an axis, up to an angle whose 1 - cos is the height.
+pub(super) struct Cone {
+    pub(super) axis: DVec3,
+    pub(super) height: f64,
+}
+
+impl Cone {
+    fn direction(&self, [u, v]: [f64; 2]) -> DVec3 {
+        around(self.axis, 1.0 - u * self.height, v)
+    }
+
+    fn solid_angle(&self) -> f64 {
+        TAU * self.height
+    }
+
+    fn holds(&self, direction: DVec3) -> bool {
+        1.0 - direction.dot(self.axis) <= self.height
+    }
+}
+
+fn leave_point(position: DVec3, cone: &Cone, intensity: DVec3, aim: Option<&Aim>, uv: [f64; 2]) -> Leaving {
+    let aimed = aim.map(|aim| aim.cone(position)).filter(|aimed| aimed.height < cone.height);
+    let chosen = aimed.as_ref().unwrap_or(cone);
+    let direction = chosen.direction(uv);
+    let power =
+        if cone.holds(direction) || aimed.is_none() { chosen.solid_angle() * intensity } else { DVec3::ZERO };
+    Leaving { origin: position, direction, power }
+}
+
+/// From a place on the light, by Lambert's law or towards what the light is aimed at.
+fn leave_area(light: &AreaLight, aim: Option<&Aim>, uv: [f64; 2], random: &mut Stream) -> Leaving {
+    let LightSample { position, normal, intensity } = light.sample(uv);
+    let start = position + START_MARGIN * position.abs().max_element() * normal;
+    match aim {
+        None => Leaving { origin: start, direction: cosine_around(normal, random), power: PI * intensity },
+        Some(aim) => {
+            let cone = aim.cone(position);
+            let direction = cone.direction([random.number(), random.number()]);
+            let cos = normal.dot(direction).max(0.0);
+            Leaving { origin: start, direction, power: cone.solid_angle() * cos * intensity }
+        }
     }
 }
 
@@ -148,35 +232,6 @@ fn stratum(index: u32, count: u32, random: &mut Stream) -> [f64; 2] {
     #[expect(clippy::cast_precision_loss, reason = "all are below 2^32")]
     let [cell, begin, cells, count] = [index - begin, begin, end - begin, count].map(|number| number as f64);
     [(cell + random.number()) / cells, (begin + cells * random.number()) / count]
-}
-
-fn cumulative(shape: &LightShape) -> Vec<f64> {
-    let LightShape::Area { triangles, .. } = shape else { return Vec::new() };
-    let total: f64 = triangles.iter().map(area).sum();
-    let mut sum = 0.0;
-    let sums = triangles.iter().map(|triangle| {
-        sum += area(triangle) / total;
-        sum
-    });
-    sums.collect()
-}
-
-/// A point on the triangles for a point (u, v) of the unit square, and a direction from there by Lambert's law.
-fn leave_area(
-    triangles: &[[Vec3; 3]],
-    cumulative: &[f64],
-    [u, v]: [f64; 2],
-    random: &mut Stream,
-) -> (Vec3, Vec3) {
-    let index = cumulative.partition_point(|&sum| sum <= u).min(triangles.len() - 1);
-    let before = if index == 0 { 0.0 } else { cumulative[index - 1] };
-    let share = ((u - before) / (cumulative[index] - before)).clamp(0.0, 1.0);
-    let [corner, second, third] = triangles[index].map(Vec3::as_dvec3);
-    let across = v * (third - second);
-    let position = corner + share.sqrt() * (second - corner + across);
-    let normal = (second - corner).cross(third - corner).normalize();
-    let start = position + START_MARGIN * position.abs().max_element() * normal;
-    (start.as_vec3(), cosine_around(normal, random).as_vec3())
 }
 
 /// A direction around `normal` by Lambert's law: as likely as the cosine of its angle to the normal.

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use serde::Serialize;
 
 use super::{Emission, Photon};
@@ -32,6 +32,8 @@ pub struct Tally {
     counts: Vec<Vec<u64>>,
     /// Power before absorption by bounce, linear RGB.
     flux: Vec<DVec3>,
+    /// Power that would have gone on after the last landing that was asked for, linear RGB.
+    cut_off: DVec3,
 }
 
 /// Where photons land, in shares; the file of `varikernel photons --stats`.
@@ -63,13 +65,20 @@ impl Tally {
         self.flux[bounce] += photon.power.as_dvec3();
     }
 
+    /// Ends a photon that has landed as often as was asked for, and would have gone on with `power`.
+    pub(super) fn cut_off(&mut self, power: Vec3) {
+        self.ends.bounces_used += 1;
+        self.cut_off += power.as_dvec3();
+    }
+
     /// Adds the numbers of `other`.
-    pub(super) fn merge(&mut self, other: &Self) {
+    pub(crate) fn merge(&mut self, other: &Self) {
         self.photons += other.photons;
         self.ends.left += other.ends.left;
         self.ends.absorbed += other.ends.absorbed;
         self.ends.bounces_used += other.ends.bounces_used;
         self.ends.given_up += other.ends.given_up;
+        self.cut_off += other.cut_off;
         self.counts.resize(self.counts.len().max(other.counts.len()), Vec::new());
         self.flux.resize(self.counts.len(), DVec3::ZERO);
         for (ours, theirs) in self.counts.iter_mut().zip(&other.counts) {
@@ -81,6 +90,13 @@ impl Tally {
         for (our, their) in self.flux.iter_mut().zip(&other.flux) {
             *our += their;
         }
+    }
+
+    /// Power that reflection would have sent on after the last landing that was asked for, linear RGB: light that is missing. The sum
+    /// of the light that it would have brought is larger, as each further landing brings it again.
+    #[must_use]
+    pub fn power_cut_off(&self) -> DVec3 {
+        self.cut_off
     }
 
     /// All landings.

@@ -1,5 +1,6 @@
 //! Photons: from the lights into the scene, landing after landing (thesis 2.4, 2.6.1), on the CPU.
 
+mod aim;
 mod emission;
 mod files;
 mod landings;
@@ -13,7 +14,7 @@ mod tracer;
 pub use emission::{Emission, EmittedPhoton};
 pub use files::{PhotonFormat, write};
 pub use landings::{Ends, Landings, Tally};
-pub use scatter::{reflect, refract};
+pub use scatter::{reflect, reflected_by_pane, refract};
 pub use tracer::{trace, trace_from, trace_from_hits, trace_in_batches};
 
 pub use crate::photon_point::PhotonPoint;

@@ -4,7 +4,7 @@ use glam::{DVec3, Vec3};
 
 use super::emission::cosine_around;
 use super::random::{Purpose, Stream};
-use super::scatter::{reflect, refract};
+use super::scatter::{reflect, reflected_by_pane, refract};
 use super::{EmittedPhoton, MAX_SPECULAR, Photon, Tally, TraceSettings};
 use crate::scene::{Hit, Ray, Scattering, Scene};
 
@@ -36,7 +36,7 @@ pub(super) fn follow(
         // The side from which the photon comes.
         let side = if hit.normal.dot(ray.direction) <= 0.0 { 1.0 } else { -1.0 };
         let facing = side * hit.normal;
-        let (direction, onward) = match scene.materials()[hit.material as usize].scattering {
+        let (direction, onward) = match scene.scattering(&hit) {
             Scattering::Lambert(reflectance) => {
                 let photon = Photon {
                     position: hit.position.as_vec3(),
@@ -52,7 +52,7 @@ pub(super) fn follow(
                 tally.add(&photon);
                 (bounce, specular) = (bounce + 1, 0);
                 if bounce == settings.bounces {
-                    tally.ends.bounces_used += 1;
+                    tally.cut_off(power * reflectance);
                     return;
                 }
                 power *= reflectance;
@@ -71,10 +71,6 @@ pub(super) fn follow(
                 specular += 1;
                 (mirrored(&ray, &hit, side), facing)
             }
-            Scattering::ThinDielectric { transmittance, .. } => {
-                (power, specular) = (power * transmittance, specular + 1);
-                (ray.direction, -facing)
-            }
             Scattering::Dielectric { index } => {
                 specular += 1;
                 let ratio = if side > 0.0 { 1.0 / f64::from(index) } else { f64::from(index) };
@@ -84,6 +80,21 @@ pub(super) fn follow(
                         (direction, -facing)
                     }
                     None => (mirrored(&ray, &hit, side), facing),
+                }
+            }
+            Scattering::ThinDielectric { index, transmittance } => {
+                specular += 1;
+                let reflected = reflected_by_pane(ray.direction.dot(hit.normal).abs(), index);
+                if random.number() < reflected {
+                    (mirrored(&ray, &hit, side), facing)
+                } else {
+                    power *= transmittance;
+                    if power == Vec3::ZERO {
+                        tally.ends.absorbed += 1;
+                        return;
+                    }
+                    through_glass = true;
+                    (ray.direction, -facing)
                 }
             }
         };

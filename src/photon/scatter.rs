@@ -26,3 +26,15 @@ pub fn refract(direction: DVec3, normal: DVec3, ratio: f64) -> Option<(DVec3, f6
     let along = (cos_before - ratio * cos_behind) / (cos_before + ratio * cos_behind);
     Some((refracted.normalize(), f64::midpoint(across * across, along * along)))
 }
+
+/// The share of unpolarised light that a thin pane reflects, with all that goes to and fro between its faces: 2 R / (1 + R) where one
+/// face reflects R.
+///
+/// `cos` is that of the angle between the light and the pane's normal; `index` is the pane's index of refraction over that around it.
+#[must_use]
+pub fn reflected_by_pane(cos: f64, index: f32) -> f64 {
+    let direction = DVec3::new((1.0 - cos * cos).max(0.0).sqrt(), 0.0, -cos);
+    let one_face =
+        refract(direction, DVec3::Z, 1.0 / f64::from(index)).map_or(1.0, |(_, reflected)| reflected);
+    2.0 * one_face / (1.0 + one_face)
+}

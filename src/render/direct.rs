@@ -3,11 +3,14 @@
 //! Area lights are sampled evenly by area, one ray in each cell of a grid; glass casts a hard shadow, since photons bring
 //! the light that passes it.
 
+use std::f64::consts::PI;
+
 use glam::{DVec3, Vec3};
 use rand::{RngExt as _, SeedableRng as _};
 use rand_pcg::Pcg64Mcg;
 
-use crate::scene::{LightShape, Ray, Scene};
+use super::sight::Place;
+use crate::scene::{Ray, Scene};
 
 /// A shadow ray ends this share of its length before the light, which may itself be a surface.
 const BEFORE_LIGHT: f64 = 1e-6;
@@ -28,14 +31,17 @@ impl Dice {
     }
 }
 
+/// Radiance of direct light that a place sends to the camera.
+pub(super) fn reflected(scene: &Scene, place: &Place, samples: u32, dice: &mut Dice) -> DVec3 {
+    // What reflects nothing, as most lights, needs no shadow rays.
+    if place.share == Vec3::ZERO {
+        return DVec3::ZERO;
+    }
+    place.share.as_dvec3() * irradiance(scene, place.position, place.normal, samples, dice) / PI
+}
+
 /// Irradiance from all lights at `position`, on the side to which `normal` points.
-pub(super) fn irradiance(
-    scene: &Scene,
-    position: DVec3,
-    normal: DVec3,
-    samples: u32,
-    dice: &mut Dice,
-) -> DVec3 {
+fn irradiance(scene: &Scene, position: DVec3, normal: DVec3, samples: u32, dice: &mut Dice) -> DVec3 {
     let start = scene.start(position, normal);
     let visible = |to: DVec3| {
         let away = to - start;
@@ -52,22 +58,4 @@ pub(super) fn irradiance(
         }
     }
     total
-}
-
-/// Radiance of a light that the ray meets before `limit`.
-pub(super) fn seen_light(scene: &Scene, ray: &Ray, limit: f64) -> Vec3 {
-    let mut nearest = (limit * (1.0 + BEFORE_LIGHT), Vec3::ZERO);
-    for light in scene.lights() {
-        let LightShape::Area { triangles, radiance } = &light.shape else { continue };
-        for [a, b, c] in triangles.iter().map(|corners| corners.map(Vec3::as_dvec3)) {
-            let edges = crate::scene::TriangleEdges { corner: a, edge1: b - a, edge2: c - a };
-            if (b - a).cross(c - a).dot(ray.direction) < 0.0
-                && let Some((distance, _)) = edges.intersect(ray)
-                && distance < nearest.0
-            {
-                nearest = (distance, *radiance);
-            }
-        }
-    }
-    nearest.1
 }

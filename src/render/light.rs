@@ -34,9 +34,10 @@ impl Light {
         progress: &mut dyn FnMut(Progress),
     ) -> Result<Self> {
         let view = scene.view(settings.size);
-        let surfaces = SurfaceStage::new(gl)?.draw(scene, view)?;
+        let mut surfaces = SurfaceStage::new(gl)?.draw(scene, view)?;
         progress(Progress { stage: "direct light", done: 0.0 });
         let sight = Sight::new(scene, &view);
+        sight.paint(&mut surfaces)?;
         #[expect(clippy::cast_precision_loss, reason = "a share")]
         let straight = sight.straight.len() as f64 / (sight.straight.len() + sight.bent.len()).max(1) as f64;
         // Straight places come first, then bent ones.
@@ -86,11 +87,11 @@ fn trace(
                 let index = u32::try_from(index).expect("a part is small");
                 let mut dice = Dice::new(seed, (number << 14) + index);
                 let samples = settings.light_samples;
-                direct::irradiance(scene, place.position, place.normal, samples, &mut dice)
+                direct::reflected(scene, place, samples, &mut dice)
             })
             .collect();
-        for (place, arrives) in part.iter().zip(found) {
-            add(direct, place.pixel, place.share.as_dvec3() * arrives / PI);
+        for (place, radiance) in part.iter().zip(found) {
+            add(direct, place.pixel, radiance);
         }
         done += part.len();
         #[expect(clippy::cast_precision_loss, reason = "a share")]

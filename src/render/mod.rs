@@ -123,9 +123,13 @@ impl Renderer {
         let view = light.surfaces.view();
         let seen: Vec<_> = photons.iter().copied().filter(|photon| photon.may_be_seen(view)).collect();
         points.upload(&seen)?;
-        let grid = (!light.bent.is_empty()).then(|| PhotonGrid::new(photons, scene.bounds()));
+        let grid = (!light.bent.is_empty()).then(|| PhotonGrid::new(photons));
         let count = u32::try_from(photons.len()).expect("fewer than 2^32 photons");
-        Self::assemble(gl, light, Traced { emitted: count, landings: count.into(), points, grid })
+        Self::assemble(
+            gl,
+            light,
+            Traced { emitted: count, landings: count.into(), cut_off_share: 0.0, points, grid },
+        )
     }
 
     fn assemble(gl: &Gl, light: Light, traced: Traced) -> Result<Self> {
@@ -288,6 +292,7 @@ impl Renderer {
             power_in: power_in.to_array(),
             power_out: power_out.to_array(),
             fragments,
+            cut_off_share: self.traced.cut_off_share,
             limited_share: f64::from(ended) / f64::from(diffuse.max(1)),
         })
     }

@@ -21,6 +21,25 @@ pub(super) enum Width {
     Fixed(f64),
 }
 
+/// Photons that tell where most of them are.
+const ASKED: usize = 4096;
+
+/// The corners of a box that leaves out at most a hundredth of the photons on each of its sides: a few that land far away would make all
+/// cells coarse.
+fn around_most(photons: &[PhotonPoint]) -> (Vec3, Vec3) {
+    let mut corners = [Vec3::ZERO; 2];
+    for axis in 0..3 {
+        let step = photons.len().div_ceil(ASKED).max(1);
+        let mut at: Vec<f32> = photons.iter().step_by(step).map(|photon| photon.position[axis]).collect();
+        at.sort_unstable_by(f32::total_cmp);
+        let beyond = at.len() / 100;
+        if let (Some(&low), Some(&high)) = (at.get(beyond), at.iter().rev().nth(beyond)) {
+            (corners[0][axis], corners[1][axis]) = (low, high);
+        }
+    }
+    (corners[0], corners[1])
+}
+
 /// Photons in the order of their cells.
 #[derive(Debug)]
 pub(super) struct PhotonGrid {
@@ -33,8 +52,10 @@ pub(super) struct PhotonGrid {
 }
 
 impl PhotonGrid {
-    /// Sorts photons into cells between the corners of a box.
-    pub(super) fn new(photons: &[PhotonPoint], (min, max): (Vec3, Vec3)) -> Self {
+    /// Sorts photons into cells. The grid holds most of them; those beyond it are in the cells at its border, which are as near to any
+    /// place as the photons are, or nearer.
+    pub(super) fn new(photons: &[PhotonPoint]) -> Self {
+        let (min, max) = around_most(photons);
         let cell = ((max - min).max_element() / CELLS).max(f32::MIN_POSITIVE);
         let cells = ((max - min) / cell).floor().as_ivec3() + 1;
         let mut grid = Self { corner: min, cell, cells, begins: Vec::new(), photons: Vec::new() };

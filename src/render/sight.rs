@@ -6,8 +6,9 @@
 use glam::{DVec3, UVec2, Vec3};
 use rayon::prelude::*;
 
-use super::direct::seen_light;
-use crate::photon::{reflect, refract};
+use crate::error::Result;
+use crate::maps::SurfaceMaps;
+use crate::photon::{reflect, reflected_by_pane, refract};
 use crate::scene::{Hit, Ray, Scattering, Scene};
 use crate::view::View;
 
@@ -38,8 +39,10 @@ pub(super) struct Sight {
     pub(super) straight: Vec<Place>,
     /// Those that are seen in mirrors and through glass.
     pub(super) bent: Vec<Place>,
-    /// Pixels, and the radiance of the lights that they see.
+    /// Pixels, and the radiance of what shines by itself in them.
     pub(super) lights: Vec<(u32, Vec3)>,
+    /// Pixels that show a diffuse surface straight, and its reflectance; only where it differs within a material.
+    pub(super) albedos: Vec<(u32, Vec3)>,
 }
 
 impl Sight {
@@ -61,18 +64,30 @@ impl Sight {
             all.straight.extend(row.straight);
             all.bent.extend(row.bent);
             all.lights.extend(row.lights);
+            all.albedos.extend(row.albedos);
         }
         all
     }
 
+    /// Sets the albedo of pixels where it is that of a texture or of colours of vertices.
+    pub(super) fn paint(&self, surfaces: &mut SurfaceMaps) -> Result<()> {
+        if self.albedos.is_empty() {
+            return Ok(());
+        }
+        let mut albedo = surfaces.read_albedo()?;
+        for &(pixel, reflectance) in &self.albedos {
+            let (x, y) = (pixel % albedo.size().x, pixel / albedo.size().x);
+            albedo.set(x, y, reflectance.extend(1.0).to_array());
+        }
+        surfaces.set_albedo(&albedo)
+    }
+
     fn follow(&mut self, scene: &Scene, pixel: u32, ray: &Ray, share: Vec3, way: f64, depth: u32) {
-        let hit = scene.cast(ray);
-        let light = seen_light(scene, ray, hit.map_or(f64::INFINITY, |hit| hit.distance));
+        let Some(hit) = scene.cast(ray) else { return };
+        let light = scene.emission(&hit, ray.direction);
         if light != Vec3::ZERO {
             self.lights.push((pixel, share * light));
-            return;
         }
-        let Some(hit) = hit else { return };
         let distance = way + hit.distance;
         let side = if hit.normal.dot(ray.direction) <= 0.0 { 1.0 } else { -1.0 };
         let facing = side * hit.normal;
@@ -82,8 +97,11 @@ impl Sight {
                 self.follow(scene, pixel, &ray, share, distance, depth + 1);
             }
         };
-        match scene.materials()[hit.material as usize].scattering {
+        match scene.scattering(&hit) {
             Scattering::Lambert(reflectance) => {
+                if depth == 0 && scene.has_patterns() {
+                    self.albedos.push((pixel, reflectance));
+                }
                 #[expect(clippy::cast_precision_loss, reason = "fewer than 2^24 surfaces")]
                 let surface = (hit.surface + 1) as f32;
                 let place = Place {
@@ -97,9 +115,6 @@ impl Sight {
                 if depth == 0 { self.straight.push(place) } else { self.bent.push(place) }
             }
             Scattering::Mirror(reflectance) => go(mirrored(ray, &hit, side), facing, share * reflectance),
-            Scattering::ThinDielectric { transmittance, .. } => {
-                go(ray.direction, -facing, share * transmittance);
-            }
             Scattering::Dielectric { index } => {
                 let ratio = if side > 0.0 { 1.0 / f64::from(index) } else { f64::from(index) };
                 let smooth = side * hit.smooth_normal;
@@ -111,6 +126,12 @@ impl Sight {
                 if let Some((direction, _)) = refracted {
                     go(direction, -facing, share * (1.0 - reflected));
                 }
+                go(mirrored(ray, &hit, side), facing, share * reflected);
+            }
+            Scattering::ThinDielectric { index, transmittance } => {
+                #[expect(clippy::cast_possible_truncation, reason = "a share from 0 to 1")]
+                let reflected = reflected_by_pane(ray.direction.dot(hit.normal).abs(), index) as f32;
+                go(ray.direction, -facing, share * transmittance * (1.0 - reflected));
                 go(mirrored(ray, &hit, side), facing, share * reflected);
             }
         }

@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::gl::Gl;
 use crate::maps::PhotonPoints;
 use crate::photon::{
-    Emission, FirstHit, Photon, PhotonPoint, TraceSettings, trace_from_hits, trace_in_batches,
+    Emission, FirstHit, Photon, PhotonPoint, Tally, TraceSettings, trace_from_hits, trace_in_batches,
 };
 use crate::scene::Scene;
 use crate::settings::FirstBounce;
@@ -21,6 +21,8 @@ const UPLOAD: usize = 1 << 20;
 pub(super) struct Traced {
     pub(super) emitted: u32,
     pub(super) landings: u64,
+    /// Share of the lights' power that would have gone on after the last landing.
+    pub(super) cut_off_share: f64,
     /// Those that may be seen, on the GPU.
     pub(super) points: PhotonPoints,
     /// All of them, if mirrors or glass show places outside of the picture.
@@ -60,32 +62,30 @@ impl Traced {
         let mut show = |followed: u32| {
             progress(Progress { stage: "photons", done: f64::from(followed) / f64::from(trace.photons) });
         };
-        let landings = match first_bounce {
-            FirstBounce::Rays => {
-                let tally = trace_in_batches(scene, &emission, |photons, followed| {
-                    keep(photons, &mut points)?;
-                    show(followed);
-                    Ok(())
-                })?;
-                tally.total()
-            }
+        let tally = match first_bounce {
+            FirstBounce::Rays => trace_in_batches(scene, &emission, |photons, followed| {
+                keep(photons, &mut points)?;
+                show(followed);
+                Ok::<_, crate::Error>(())
+            })?,
             FirstBounce::Maps => {
                 let mut maps = BounceMaps::new(gl, scene)?;
-                let (mut landings, mut followed) = (0, 0);
+                let (mut all, mut followed) = (Tally::default(), 0);
                 while let Some(hits) = maps.next_hits(&emission, followed)? {
                     let (photons, tally) = trace_from_hits(scene, trace, &hits);
                     keep(&photons, &mut points)?;
-                    landings += tally.total();
+                    all.merge(&tally);
                     followed +=
                         u32::try_from(hits.len()).unwrap_or_else(|_| unreachable!("a part of the photons"));
                     show(followed);
                 }
-                landings
+                all
             }
         };
         points.upload(&seen)?;
-        let grid = needs_grid.then(|| PhotonGrid::new(&all, scene.bounds()));
-        Ok(Self { emitted: trace.photons, landings, points, grid })
+        let grid = needs_grid.then(|| PhotonGrid::new(&all));
+        let cut_off_share = tally.power_cut_off().element_sum() / emission.flux().element_sum();
+        Ok(Self { emitted: trace.photons, landings: tally.total(), cut_off_share, points, grid })
     }
 }
 

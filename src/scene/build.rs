@@ -1,6 +1,7 @@
 //! From the fields of a scene file to a scene, with every check that TOML does not make.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use glam::Vec3;
 use toml::Spanned;
@@ -9,7 +10,10 @@ use super::fields::MAX_COORDINATE;
 use super::format::{LightEntry, MaterialEntry, MeshEntry, SceneEntry, SurfaceEntry};
 use super::mesh;
 use super::source::{Files, Text};
-use super::{Camera, Geometry, Light, LightShape, Material, Scattering, Scene, Sphere};
+use super::{
+    AreaLight, Camera, Geometry, Light, LightShape, Material, PlacedTexture, Scattering, Scene, Sphere,
+    Triangle,
+};
 use crate::{Error, Result};
 
 /// Reads the text of a scene file.
@@ -59,15 +63,28 @@ pub(super) fn scene(text: &Text<'_>, files: &Files) -> Result<Scene> {
 
 /// A light for each surface that shines, and each of its materials.
 fn shining(geometry: &Geometry, materials: &[Material]) -> Vec<Light> {
-    let mut groups: BTreeMap<(u32, u32), Vec<[Vec3; 3]>> = BTreeMap::new();
+    let mut groups: BTreeMap<(u32, u32), Vec<&Triangle>> = BTreeMap::new();
     for triangle in &geometry.triangles {
         if materials[triangle.material as usize].emission != Vec3::ZERO {
-            groups.entry((triangle.surface, triangle.material)).or_default().push(geometry.corners(triangle));
+            groups.entry((triangle.surface, triangle.material)).or_default().push(triangle);
         }
     }
-    let light = |((surface, material), triangles): ((u32, u32), _)| Light {
-        name: geometry.surfaces[surface as usize].clone(),
-        shape: LightShape::Area { triangles, radiance: materials[material as usize].emission },
+    let light = |((surface, material), triangles): ((u32, u32), Vec<&Triangle>)| {
+        let material = &materials[material as usize];
+        let corners = triangles.iter().map(|triangle| geometry.corners(triangle)).collect();
+        let texture = material.emission_texture.as_ref().map(|texture| PlacedTexture {
+            texture: Arc::clone(texture),
+            coordinates: triangles
+                .iter()
+                .map(|triangle| {
+                    triangle.vertices.map(|vertex| geometry.vertices[vertex as usize].coordinates[1])
+                })
+                .collect(),
+        });
+        Light {
+            name: geometry.surfaces[surface as usize].clone(),
+            shape: LightShape::Area(AreaLight::new(corners, material.emission, texture)),
+        }
     };
     groups.into_iter().map(light).collect()
 }
@@ -156,20 +173,24 @@ impl Builder<'_> {
             Some(emission) => self.text.colour(emission, &field("emission"), f64::from(f32::MAX))?,
             None => Vec3::ZERO,
         };
-        let scattering = match (&entry.lambert, &entry.mirror, &entry.dielectric) {
-            (Some(reflectance), None, None) => {
+        let scattering = match (&entry.lambert, &entry.mirror, &entry.dielectric, &entry.thin_dielectric) {
+            (Some(reflectance), None, None, None) => {
                 Scattering::Lambert(self.text.colour(reflectance, &field("lambert"), 1.0)?)
             }
-            (None, Some(reflectance), None) => {
+            (None, Some(reflectance), None, None) => {
                 Scattering::Mirror(self.text.colour(reflectance, &field("mirror"), 1.0)?)
             }
-            (None, None, Some(index)) => {
+            (None, None, Some(index), None) => {
                 Scattering::Dielectric { index: self.text.number(index, &field("dielectric"), 0.1, 10.0)? }
             }
+            (None, None, None, Some(index)) => Scattering::ThinDielectric {
+                index: self.text.number(index, &field("thin_dielectric"), 0.1, 10.0)?,
+                transmittance: Vec3::ONE,
+            },
             _ => {
                 let (field, problem) =
                     (format!("materials.{}", name.get_ref()), "not exactly one kind is given");
-                let remedy = "give one of lambert, mirror and dielectric";
+                let remedy = "give one of lambert, mirror, dielectric and thin_dielectric";
                 return Err(self.text.error(&name.span(), &field, problem, remedy));
             }
         };
@@ -236,7 +257,7 @@ impl Builder<'_> {
                 remedy,
             )
         };
-        let mut mesh = mesh::load(self.files, file).map_err(refuse)?;
+        let mut mesh = mesh::load(self.files, file, material.is_none()).map_err(refuse)?;
         if material.is_none() && mesh.parts.iter().any(|part| part.material.is_none()) {
             let problem = "parts of the mesh have no material, nor has the surface".to_owned();
             return Err(refuse((problem, "give the surface a material")));

@@ -47,13 +47,14 @@ pub(super) struct LightEntry {
     pub(super) angle_degrees: Option<Spanned<f64>>,
 }
 
-/// One of `lambert`, `mirror` and `dielectric`, with or without `emission`.
+/// One of `lambert`, `mirror`, `dielectric` and `thin_dielectric`, with or without `emission`.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct MaterialEntry {
     pub(super) lambert: Option<Spanned<Triple>>,
     pub(super) mirror: Option<Spanned<Triple>>,
     pub(super) dielectric: Option<Spanned<f64>>,
+    pub(super) thin_dielectric: Option<Spanned<f64>>,
     pub(super) emission: Option<Spanned<Triple>>,
 }
 

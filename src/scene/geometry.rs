@@ -1,6 +1,8 @@
 //! Triangles and spheres, as they are rasterised and as rays see them.
 
 use bytemuck::{Pod, Zeroable};
+#[cfg(feature = "render")]
+use glam::DVec3;
 use glam::{Vec2, Vec3};
 
 /// A corner of triangles.
@@ -85,20 +87,42 @@ impl Geometry {
         });
     }
 
+    /// The opposite corners of the box around each primitive.
+    pub(super) fn boxes(&self) -> Vec<(Vec3, Vec3)> {
+        let around_triangles = self.triangles.iter().map(|triangle| {
+            let [a, b, c] = self.corners(triangle);
+            (a.min(b).min(c), a.max(b).max(c))
+        });
+        around_triangles.chain(self.spheres.iter().map(Sphere::around)).collect()
+    }
+
     /// The opposite corners of the box around everything.
     #[must_use]
     pub fn bounds(&self) -> (Vec3, Vec3) {
         let points = self.vertices.iter().map(|vertex| (vertex.position, vertex.position));
-        let spheres =
-            self.spheres.iter().map(|sphere| (sphere.centre - sphere.radius, sphere.centre + sphere.radius));
         points
-            .chain(spheres)
+            .chain(self.spheres.iter().map(Sphere::around))
             .reduce(|(min, max), (low, high)| (min.min(low), max.max(high)))
             .unwrap_or((Vec3::ZERO, Vec3::ZERO))
     }
 }
 
+/// The normal of a triangle, and the distance of its plane from `origin` along it, in scene units.
+#[cfg(feature = "render")]
+pub(crate) fn plane(corners: [Vec3; 3], origin: DVec3) -> (Vec3, f32) {
+    let [a, b, c] = corners.map(Vec3::as_dvec3);
+    let normal = (b - a).cross(c - a).normalize();
+    #[expect(clippy::cast_possible_truncation, reason = "what a shader takes")]
+    let distance = normal.dot(a - origin) as f32;
+    (normal.as_vec3(), distance)
+}
+
 impl Sphere {
+    /// The opposite corners of the box around it.
+    fn around(&self) -> (Vec3, Vec3) {
+        (self.centre - self.radius, self.centre + self.radius)
+    }
+
     /// A cube around the sphere, a little larger, as 36 corners of triangles for a rasteriser.
     #[cfg(feature = "render")]
     pub(crate) fn cube(&self) -> [Vec3; 36] {

@@ -48,6 +48,16 @@ impl TriangleEdges {
         // Also refuses what is not a number.
         (distance > 0.0).then_some((distance, DVec2::new(second, third)))
     }
+
+    /// The shares of the second and third corner at a place in the triangle's plane.
+    #[must_use]
+    pub fn shares(&self, position: DVec3) -> DVec2 {
+        let across = self.edge1.cross(self.edge2);
+        let from_corner = position - self.corner;
+        let second = from_corner.cross(self.edge2).dot(across) / across.length_squared();
+        let third = self.edge1.cross(from_corner).dot(across) / across.length_squared();
+        DVec2::new(second, third)
+    }
 }
 
 /// Distance along the ray, more than zero, to the first place on the sphere.

@@ -2,7 +2,9 @@
 
 use std::f64::consts::{PI, TAU};
 
-use glam::{DVec3, Vec3};
+use glam::{DVec2, DVec3, Vec3};
+
+use super::texture::PlacedTexture;
 
 /// A light with its name in the scene file.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,13 +18,8 @@ pub struct Light {
 /// Where and how light leaves. Power is in watts when lengths are in metres; any unit will do, as only shares matter.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LightShape {
-    /// Triangles that shine evenly (Lambert) on their front side, where the corners run counter-clockwise.
-    Area {
-        /// The corners, in scene units.
-        triangles: Vec<[Vec3; 3]>,
-        /// Power per area and solid angle, linear RGB.
-        radiance: Vec3,
-    },
+    /// Triangles that shine by Lambert's law on their front side, where the corners run counter-clockwise.
+    Area(AreaLight),
     /// A point that shines evenly in a cone; all around with an angle of 180 degrees.
     Point {
         /// In scene units.
@@ -36,14 +33,143 @@ pub enum LightShape {
     },
 }
 
+/// Triangles that shine, with what it takes to choose places on them by their power: a search in as many steps as the logarithm of
+/// their number.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AreaLight {
+    triangles: Vec<[Vec3; 3]>,
+    radiance: Vec3,
+    texture: Option<PlacedTexture>,
+    /// By triangle, the chance that a place is on it or on one before.
+    cumulative: Vec<f64>,
+    area: f64,
+    /// Mean radiance by area, and power.
+    flux: DVec3,
+}
+
+/// A place on a light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LightSample {
+    /// In scene units.
+    pub position: DVec3,
+    /// Of length 1, on the side that shines.
+    pub normal: DVec3,
+    /// Radiance there over the density of places there: power per solid angle along the normal of all of the light, if all of it were as
+    /// here. Linear RGB.
+    pub intensity: DVec3,
+}
+
+/// Samples along each side of a triangle that find its mean radiance.
+const MEAN_STEPS: u32 = 8;
+/// The chance of a triangle is at least that of one with this share of the light's mean radiance, so that a bright texel that no
+/// sample of the mean met is found all the same.
+const LEAST_RADIANCE: f64 = 0.05;
+
+impl AreaLight {
+    /// Triangles that shine with `radiance` (power per area and solid angle, linear RGB), times a texture.
+    ///
+    /// # Panics
+    /// Unless the texture has coordinates for each triangle, and there is a triangle.
+    #[must_use]
+    pub fn new(triangles: Vec<[Vec3; 3]>, radiance: Vec3, texture: Option<PlacedTexture>) -> Self {
+        assert!(!triangles.is_empty(), "a light has a triangle");
+        assert!(
+            texture.as_ref().is_none_or(|texture| texture.coordinates.len() == triangles.len()),
+            "a light's texture lies on each of its triangles"
+        );
+        let areas: Vec<f64> = triangles.iter().map(area).collect();
+        let whole: f64 = areas.iter().sum();
+        let means: Vec<DVec3> = match &texture {
+            None => Vec::new(),
+            Some(texture) => (0..triangles.len()).map(|index| texture.mean(index)).collect(),
+        };
+        let mean = match &texture {
+            None => DVec3::ONE,
+            Some(_) => means.iter().zip(&areas).map(|(&mean, &area)| mean * area).sum::<DVec3>() / whole,
+        };
+        let weight = |index: usize| {
+            let Some(own) = means.get(index) else { return areas[index] };
+            let colour = radiance.as_dvec3();
+            areas[index] * (own.dot(colour) + LEAST_RADIANCE * mean.dot(colour)).max(f64::MIN_POSITIVE)
+        };
+        let weights: f64 = (0..areas.len()).map(weight).sum();
+        let mut sum = 0.0;
+        let cumulative = (0..areas.len()).map(|index| {
+            sum += weight(index) / weights;
+            sum
+        });
+        Self {
+            cumulative: cumulative.collect(),
+            area: whole,
+            flux: PI * whole * radiance.as_dvec3() * mean,
+            triangles,
+            radiance,
+            texture,
+        }
+    }
+
+    /// The corners, in scene units.
+    #[must_use]
+    pub fn triangles(&self) -> &[[Vec3; 3]] {
+        &self.triangles
+    }
+
+    /// Power per area and solid angle, linear RGB, before a texture.
+    #[must_use]
+    pub fn radiance(&self) -> Vec3 {
+        self.radiance
+    }
+
+    /// The place for a point (u, v) of the unit square, by power among triangles and by area on each.
+    #[must_use]
+    pub fn sample(&self, [u, v]: [f64; 2]) -> LightSample {
+        let index = self.cumulative.partition_point(|&sum| sum <= u).min(self.triangles.len() - 1);
+        let before = if index == 0 { 0.0 } else { self.cumulative[index - 1] };
+        let chance = self.cumulative[index] - before;
+        let share = ((u - before) / chance).clamp(0.0, 1.0).sqrt();
+        let [corner, second, third] = self.triangles[index].map(Vec3::as_dvec3);
+        let position = corner + share * (second - corner + v * (third - second));
+        let across = (second - corner).cross(third - corner);
+        let intensity = match &self.texture {
+            None => self.radiance.as_dvec3() * self.area,
+            Some(texture) => {
+                let texel = texture.at(index, DVec2::new(share * (1.0 - v), share * v));
+                self.radiance.as_dvec3() * texel * (across.length() / 2.0 / chance)
+            }
+        };
+        LightSample { position, normal: across.normalize(), intensity }
+    }
+}
+
+impl PlacedTexture {
+    /// Linear RGB on a triangle, at the shares of its second and third corner.
+    pub(super) fn at(&self, triangle: usize, shares: DVec2) -> DVec3 {
+        let [corner, second, third] = self.coordinates[triangle].map(|place| place.as_dvec2());
+        let place = corner + shares.x * (second - corner) + shares.y * (third - corner);
+        self.texture.at(place).as_dvec3()
+    }
+
+    /// Mean over a triangle.
+    fn mean(&self, triangle: usize) -> DVec3 {
+        let middle = |step: u32| (f64::from(step) + 0.5) / f64::from(MEAN_STEPS);
+        let mut sum = DVec3::ZERO;
+        for row in 0..MEAN_STEPS {
+            for column in 0..MEAN_STEPS {
+                let (share, v) = (middle(row).sqrt(), middle(column));
+                sum += self.at(triangle, DVec2::new(share * (1.0 - v), share * v));
+            }
+        }
+        sum / f64::from(MEAN_STEPS * MEAN_STEPS)
+    }
+}
+
 impl Light {
-    /// All power that leaves the light, linear RGB: π · area · radiance, or solid angle · intensity.
+    /// All power that leaves the light, linear RGB: π · area · radiance, or solid angle · intensity. With a texture, as some
+    /// samples of it say.
     #[must_use]
     pub fn flux(&self) -> DVec3 {
         match &self.shape {
-            LightShape::Area { triangles, radiance } => {
-                PI * triangles.iter().map(area).sum::<f64>() * radiance.as_dvec3()
-            }
+            LightShape::Area(area) => area.flux,
             LightShape::Point { half_angle, intensity, .. } => {
                 TAU * cap_height(*half_angle) * intensity.as_dvec3()
             }

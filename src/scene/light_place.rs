@@ -1,8 +1,8 @@
 //! Places that stand for a light: what shadow rays and shadow maps start from.
 
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 
-use super::light::{Light, LightShape, area};
+use super::light::{Light, LightSample, LightShape};
 
 /// A place that a light shines from, with its part of the light.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,10 +44,7 @@ impl Light {
                 half_angle: Some(*half_angle),
                 intensity: intensity.as_dvec3(),
             }],
-            LightShape::Area { triangles, radiance } => {
-                let areas: Vec<f64> = triangles.iter().map(area).collect();
-                let whole: f64 = areas.iter().sum();
-                let intensity = radiance.as_dvec3() * (whole / f64::from(samples));
+            LightShape::Area(area) => {
                 let side = f64::from(samples).sqrt().floor().max(1.0);
                 let place = |index| {
                     // What is left over after the square grid is taken at random.
@@ -55,25 +52,16 @@ impl Light {
                     let (row, column) = ((index / side).floor(), index % side);
                     let (u, v) = (number(), number());
                     let uv = if row < side { [(column + u) / side, (row + v) / side] } else { [u, v] };
-                    let (position, axis) = place_on(triangles, &areas, whole, uv);
-                    LightPlace { position, axis, half_angle: None, intensity }
+                    let LightSample { position, normal, intensity } = area.sample(uv);
+                    LightPlace {
+                        position,
+                        axis: normal,
+                        half_angle: None,
+                        intensity: intensity / f64::from(samples),
+                    }
                 };
                 (0..samples).map(place).collect()
             }
         }
     }
-}
-
-/// A place on the triangles, evenly by area, for a point (u, v) of the unit square, and the normal there.
-fn place_on(triangles: &[[Vec3; 3]], areas: &[f64], whole: f64, [u, v]: [f64; 2]) -> (DVec3, DVec3) {
-    let mut left = u * whole;
-    let mut index = 0;
-    while index + 1 < areas.len() && left >= areas[index] {
-        left -= areas[index];
-        index += 1;
-    }
-    let [corner, second, third] = triangles[index].map(Vec3::as_dvec3);
-    let share = (left / areas[index]).clamp(0.0, 1.0);
-    let at = corner + share.sqrt() * (second - corner + v * (third - second));
-    (at, (second - corner).cross(third - corner).normalize())
 }

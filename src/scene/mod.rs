@@ -17,12 +17,15 @@ mod mesh;
 mod shipped;
 mod source;
 mod texture;
+mod tree;
 
 pub use cast::Hit;
+#[cfg(feature = "render")]
+pub(crate) use geometry::plane;
 pub use geometry::{Geometry, Sphere, Triangle, Vertex};
 pub use intersect::{TriangleEdges, intersect_sphere};
 pub(crate) use light::cap_height;
-pub use light::{Light, LightShape, area};
+pub use light::{AreaLight, Light, LightSample, LightShape, area};
 #[cfg(feature = "render")]
 pub(crate) use light_place::LightPlace;
 pub use material::{Material, Scattering};
@@ -33,7 +36,7 @@ pub use crate::view::{Camera, Ray};
 use std::fmt;
 use std::path::Path;
 
-use glam::{DVec3, UVec2, Vec3};
+use glam::{DVec2, DVec3, UVec2, Vec2, Vec3};
 
 use crate::view::View;
 use crate::{Error, Result};
@@ -54,6 +57,8 @@ pub struct Scene {
     materials: Vec<Material>,
     geometry: Geometry,
     target: Target,
+    /// Whether reflectances differ within a material: by textures or by colours of vertices.
+    has_patterns: bool,
 }
 
 impl Scene {
@@ -64,10 +69,7 @@ impl Scene {
     /// area, an unknown material, a mesh that can't be read or lies outside the scene's folder.
     pub fn load(path: &Path) -> Result<Self> {
         let content = source::read(path)?;
-        let content = str::from_utf8(&content).map_err(|error| {
-            let problem = format!("byte {} is not text", error.valid_up_to());
-            Error::file(path, problem, "give a scene file, which is TOML in UTF-8")
-        })?;
+        let content = source::text(path, &content)?;
         let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
         build::scene(&Text { path, content }, &Files::Folder(folder.to_owned()))
     }
@@ -101,7 +103,9 @@ impl Scene {
         geometry: Geometry,
     ) -> Self {
         let target = Target::new(&geometry);
-        Self { title, units, camera, lights, materials, geometry, target }
+        let has_patterns = materials.iter().any(|material| material.reflectance_texture.is_some())
+            || geometry.vertices.iter().any(|vertex| vertex.colour != Vec3::ONE);
+        Self { title, units, camera, lights, materials, geometry, target, has_patterns }
     }
 
     /// Lights, in the order of their names; surfaces that shine come last.
@@ -149,12 +153,61 @@ impl Scene {
         Some(self.target.hit(&self.geometry, ray, distance, primitive))
     }
 
+    /// What the surface does with light where it was hit: the material's scattering, with textures and colours of vertices.
+    #[must_use]
+    pub fn scattering(&self, hit: &Hit) -> Scattering {
+        let material = &self.materials[hit.material as usize];
+        if !self.has_patterns {
+            return material.scattering;
+        }
+        let Some((vertices, [first, second, third])) = self.corners_around(hit) else {
+            return material.scattering;
+        };
+        let [a, b, c] = vertices.map(|vertex| vertex.colour);
+        let colour = first * a + second * b + third * c;
+        let texel = material.reflectance_texture.as_ref().map_or(Vec3::ONE, |texture| {
+            texture.at(between(vertices.map(|vertex| vertex.coordinates[0]), [first, second, third]))
+        });
+        material.scattering.times((colour * texel).clamp(Vec3::ZERO, Vec3::ONE))
+    }
+
+    /// Whether reflectances differ within a material, so that [`scattering`](Self::scattering) has to be asked at each place.
+    #[must_use]
+    pub fn has_patterns(&self) -> bool {
+        self.has_patterns
+    }
+
+    /// Radiance that leaves the surface by itself, where it was hit, against `direction`; zero at its back.
+    #[must_use]
+    pub fn emission(&self, hit: &Hit, direction: DVec3) -> Vec3 {
+        let material = &self.materials[hit.material as usize];
+        if material.emission == Vec3::ZERO || hit.normal.dot(direction) >= 0.0 {
+            return Vec3::ZERO;
+        }
+        let Some(texture) = &material.emission_texture else { return material.emission };
+        let Some((vertices, shares)) = self.corners_around(hit) else { return material.emission };
+        material.emission * texture.at(between(vertices.map(|vertex| vertex.coordinates[1]), shares))
+    }
+
+    /// The corners of the triangle that was hit, and their shares of the place; nothing for a sphere.
+    fn corners_around(&self, hit: &Hit) -> Option<([&Vertex; 3], [f32; 3])> {
+        let shares = self.target.shares(hit.primitive, hit.position)?.as_vec2();
+        let triangle = &self.geometry.triangles[hit.primitive as usize];
+        let vertices = triangle.vertices.map(|vertex| &self.geometry.vertices[vertex as usize]);
+        Some((vertices, [1.0 - shares.x - shares.y, shares.x, shares.y]))
+    }
+
     /// Where a ray starts that leaves a surface at `position` on the side to which `normal` points: so close to it that
     /// it does not pass a neighbour, and not so close that it meets the surface again.
     #[must_use]
     pub fn start(&self, position: DVec3, normal: DVec3) -> DVec3 {
         self.target.start(position, normal)
     }
+}
+
+/// The texture coordinates of a place with the given shares of three corners.
+fn between(corners: [Vec2; 3], shares: [f32; 3]) -> DVec2 {
+    corners.iter().zip(shares).map(|(corner, share)| f64::from(share) * corner.as_dvec2()).sum()
 }
 
 impl fmt::Debug for Scene {

@@ -25,6 +25,7 @@ impl Files {
     /// # Errors
     /// What is wrong, without the name, if it is outside the scene's folder or can't be read.
     pub(super) fn read(&self, name: &str) -> Result<Vec<u8>, String> {
+        let name = normal_form(name)?;
         match self {
             Self::Shipped(files) => files
                 .iter()
@@ -32,10 +33,6 @@ impl Files {
                 .map(|(_, content)| content.as_bytes().to_vec())
                 .ok_or_else(|| "there is no such file in the program".to_owned()),
             Self::Folder(folder) => {
-                let inside = Path::new(name).components().all(|part| matches!(part, Component::Normal(_)));
-                if !inside || name.is_empty() {
-                    return Err("the path leaves the scene's folder".to_owned());
-                }
                 let path = folder.join(name);
                 // A link could still lead out.
                 if let (Ok(real), Ok(real_folder)) = (fs::canonicalize(&path), fs::canonicalize(folder))
@@ -50,6 +47,69 @@ impl Files {
             }
         }
     }
+}
+
+/// A path inside the scene's folder in its shortest form: `./a`, `a/./b`, `a//b` and `a/../b` are ways to write `a`, `a/b` and
+/// `b`, and `a\\b`, as Windows writes it, is `a/b`.
+///
+/// # Errors
+/// If it leaves the folder or names nothing in it.
+pub(super) fn normal_form(path: &str) -> Result<String, String> {
+    let leaves = || "the path leaves the scene's folder".to_owned();
+    if path.starts_with(['/', '\\']) {
+        return Err(leaves());
+    }
+    let mut parts = Vec::new();
+    for part in path.split(['/', '\\']) {
+        match part {
+            "" | "." => {}
+            ".." => drop(parts.pop().ok_or_else(leaves)?),
+            _ => parts.push(part),
+        }
+    }
+    let normal = parts.join("/");
+    // A drive, on systems that have drives.
+    if !Path::new(&normal).components().all(|part| matches!(part, Component::Normal(_))) {
+        return Err(leaves());
+    }
+    if normal.is_empty() { Err("the path names no file".to_owned()) } else { Ok(normal) }
+}
+
+/// The path, in its normal form, of a file that another names, whose path is in its normal form: it counts from that one's
+/// folder.
+///
+/// # Errors
+/// If it leaves the scene's folder or names nothing in it.
+pub(super) fn beside(file: &str, path: &str) -> Result<String, String> {
+    if path.starts_with(['/', '\\']) {
+        return normal_form(path);
+    }
+    let folder = file.rsplit_once('/').map_or("", |(folder, _)| folder);
+    normal_form(format!("{folder}/{path}").trim_start_matches('/'))
+}
+
+/// Whether a content begins as text in UTF-16 does: by its byte order mark, or by a letter and a zero byte.
+pub(super) fn is_utf16(content: &[u8]) -> bool {
+    match content {
+        [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => true,
+        [first, second, ..] => (*first == 0) != (*second == 0),
+        _ => false,
+    }
+}
+
+/// A scene file's content as text.
+///
+/// # Errors
+/// If it is not UTF-8.
+pub(super) fn text<'a>(path: &Path, content: &'a [u8]) -> Result<&'a str> {
+    if is_utf16(content) {
+        let remedy = "save it again as UTF-8; a byte order mark does no harm";
+        return Err(Error::file(path, "it is text in UTF-16", remedy));
+    }
+    str::from_utf8(content).map_err(|error| {
+        let problem = format!("byte {} is not text", error.valid_up_to());
+        Error::file(path, problem, "give a scene file, which is TOML in UTF-8")
+    })
 }
 
 /// All of a file.

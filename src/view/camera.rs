@@ -36,7 +36,8 @@ impl Camera {
 
     /// Distances that hold all of a box between its corners `min` and `max`, for [`Camera::projection`].
     ///
-    /// Where the camera is inside the box, `near` is a thousandth of `far`.
+    /// Where the camera is inside the box or close to it, `near` is 10^-12 of `far`: enough for a projection, and for depth that a shader
+    /// writes by distance, but too little for an ordinary depth buffer.
     #[must_use]
     pub fn depth_range(&self, min: Vec3, max: Vec3) -> (f32, f32) {
         let direction = self.direction.normalize();
@@ -49,6 +50,6 @@ impl Camera {
             .fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), depth| (low.min(depth), high.max(depth)));
         // A little air, so that rounding cuts nothing off.
         let far = if farthest > 0.0 { farthest * 1.001 } else { 1.0 };
-        (nearest.mul_add(0.999, 0.0).max(far / 1000.0), far)
+        ((0.999 * nearest).max(1e-12 * far), far)
     }
 }

@@ -145,6 +145,12 @@ impl View {
         self.pixel_side
     }
 
+    /// From the pinhole to the picture's corner at depth 1, where column 0 and row 0 begin, and to the next column and row.
+    #[cfg(feature = "render")]
+    pub(crate) fn rays(&self) -> [Vec3; 3] {
+        [self.to_corner, self.to_right, self.to_next_row].map(DVec3::as_vec3)
+    }
+
     /// The pixel in which a place is seen if nothing is before it; nothing outside of the picture.
     #[must_use]
     pub fn pixel_of(&self, place: Vec3) -> Option<UVec2> {

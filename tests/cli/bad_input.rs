@@ -222,6 +222,31 @@ fn outputs_that_can_not_be_written() {
     place.refuses("radius map.npy", &["--output <FILE>"]);
 }
 
+#[test]
+fn meshes_say_what_is_wrong_with_them_and_what_is_left_out() {
+    let place = workplace();
+    let scene = "[camera]\nposition = [0, 0, 3]\ndirection = [0, 0, -1]\nup = [0, 1, 0]\nvertical_fov_degrees = 60\n\
+                 [lights.lamp]\npoint = [0, 0, 3]\nintensity = [30, 30, 30]\n\
+                 [surfaces.square]\nmesh = { file = \"./a.obj\" }\n";
+    place.put("s.toml", scene.as_bytes());
+    place.put("a.obj", b"mtllib ./a.mtl\nv 0 0 0 1 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n");
+    for (mtl, words) in [
+        ("newmtl red\nKd\n", "material \"red\" of a.mtl, line 2, `Kd`: it has 0 numbers"),
+        ("newmtl red\nKd 1 2\n", "a.mtl, line 2, `Kd 1 2`: it has 2 numbers"),
+        ("newmtl blue\n", "line 5, `usemtl red`: no MTL file has this material; there are: blue"),
+    ] {
+        place.put("a.mtl", mtl.as_bytes());
+        place.refuses("photons s.toml -o new.npy", &["s.toml: line 10", "./a.obj: ", words, "\nhelp: "]);
+    }
+    place.put("a.mtl", b"newmtl red\nKd 0.6\nmap_Kd bark.png\nd 0.5\n");
+    let run = place.run("photons s.toml -o new.npy --photons 100").success();
+    let stderr = String::from_utf8_lossy(&run.get_output().stderr).into_owned();
+    let told = "a.obj: left out: vertex colours (line 2); material \"red\" of a.mtl: texture \"bark.png\" (map_Kd), \
+                transparency (d)\n";
+    assert!(stderr.contains(told), "{stderr}");
+    assert_eq!(stderr.matches("left out").count(), 1, "{stderr}");
+}
+
 #[cfg(unix)]
 #[test]
 fn a_write_that_fails_leaves_the_old_output_and_nothing_else() {

@@ -9,9 +9,15 @@ mod exact;
 mod files;
 mod glsl;
 mod gltf;
+mod interrupt;
+mod masks;
+#[path = "../common/osmesa.rs"]
+mod osmesa;
 mod outputs;
+mod owners;
 mod photons;
 mod render;
+mod saving;
 mod stress;
 mod synth;
 

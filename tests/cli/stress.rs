@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use varikernel::measure::stress::cases;
 
 use super::Workplace;
+use crate::osmesa::osmesa_is_here;
 
 #[test]
 fn a_quick_run_keeps_every_promise() {
@@ -65,7 +66,7 @@ fn a_quick_run_keeps_every_promise() {
     assert!(text.contains("softpipe") && text.contains("threads-8"), "{text}");
 }
 
-/// EGL, OSMesa and softpipe are where the tests are (`.ci/install-gl`).
+/// EGL, softpipe, Zink and, where it can be had, OSMesa are where the tests are (`.ci/install-gl`).
 fn every_renderer_computes_every_case(json: &serde_json::Value) {
     let cases: Vec<String> = cases().into_iter().map(|case| case.name).collect();
     let renderers = json["renderers"].as_array().unwrap();
@@ -74,10 +75,14 @@ fn every_renderer_computes_every_case(json: &serde_json::Value) {
         ("egl:0", "same-bits", ""),
         ("osmesa", "same-bits", ""),
         ("softpipe", "same-bits", "softpipe"),
+        ("zink", "same-bits", "zink"),
         ("threads-1", "same-bits-again", "llvmpipe"),
         ("threads-2", "same-bits-again", "llvmpipe"),
         ("threads-8", "same-bits-again", "llvmpipe"),
     ] {
+        if name == "osmesa" && !osmesa_is_here() {
+            continue;
+        }
         let renderer = renderers.iter().find(|renderer| renderer["name"] == name).unwrap();
         let ran = &renderer["found"]["ran"];
         assert!(ran["renderer"].as_str().is_some_and(|text| text.contains(driver)), "{renderer}");

@@ -18,7 +18,7 @@ type FlatLayer = Layer<AnyChannels<FlatSamples>>;
 /// The size of [`small_map`].
 const SIZE: (usize, usize) = (4, 3);
 
-const LINES: Encoding = Encoding {
+pub(crate) const LINES: Encoding = Encoding {
     compression: Compression::ZIP16,
     blocks: Blocks::ScanLines,
     line_order: LineOrder::Increasing,
@@ -30,13 +30,13 @@ fn floats(factor: f32) -> FlatSamples {
     FlatSamples::F32(small_map().values().iter().map(level).collect())
 }
 
-fn layer(name: Option<&str>, encoding: Encoding, channels: &[(&str, FlatSamples)]) -> FlatLayer {
+pub(crate) fn layer(name: Option<&str>, encoding: Encoding, channels: &[(&str, FlatSamples)]) -> FlatLayer {
     let attributes = LayerAttributes { layer_name: name.map(Text::from), ..LayerAttributes::default() };
     let channels = channels.iter().map(|(name, samples)| AnyChannel::new(*name, samples.clone())).collect();
     Layer::new(SIZE, attributes, encoding, AnyChannels::sort(channels))
 }
 
-fn file(layers: Vec<FlatLayer>) -> Vec<u8> {
+pub(crate) fn file(layers: Vec<FlatLayer>) -> Vec<u8> {
     let mut bytes = Cursor::new(Vec::new());
     FlatImage::from_layers(ImageAttributes::with_size(SIZE), layers).write().to_buffered(&mut bytes).unwrap();
     bytes.into_inner()
@@ -125,7 +125,10 @@ fn a_channel_is_chosen_by_its_name() {
     let two = file(vec![layer(None, LINES, &[("photons", floats(1.0)), ("zeros", floats(0.0))])]);
     assert_eq!(read_bytes("map.exr", &two, &named("photons")).unwrap(), small_map());
     assert_eq!(read_bytes("map.exr", &two, &named("zeros")).unwrap(), small_map().map(|_| 0));
-    assert_refused(read("map.exr", &two), &["2 channels and no choice", "photons, zeros"]);
+    assert_refused(
+        read("map.exr", &two),
+        &["2 channels and no choice", "photons, zeros", "--channel", "ReadOptions::channel"],
+    );
     assert_refused(
         read_bytes("map.exr", &two, &named("R")),
         &["no channel is named \"R\"", "photons, zeros"],
@@ -187,9 +190,11 @@ fn lossy_compression_is_refused() {
     let whole = FlatSamples::U32(small_map().values().to_vec());
     assert_eq!(with(Compression::PXR24, whole.clone()).unwrap(), small_map());
     assert_refused(with(Compression::PXR24, floats(1.0)), &["pxr24", "F32", "lossy", "ZIP"]);
+    let halves = FlatSamples::F16(vec![f16::from_f32(2.0); 12]);
     for compression in [Compression::B44, Compression::B44A, Compression::DWAA(None), Compression::DWAB(None)]
     {
-        assert_refused(with(compression, whole.clone()), &["lossy", "ZIP"]);
+        assert_refused(with(compression, halves.clone()), &["F16", "lossy", "ZIP"]);
+        assert_eq!(with(compression, whole.clone()).unwrap(), small_map(), "u32 in {compression}");
     }
 }
 

@@ -3,6 +3,9 @@
 #![expect(clippy::unwrap_used, reason = "in the helpers of tests too, a panic is the report")]
 
 mod exr_files;
+mod exr_packed;
+mod links;
+mod masks;
 mod npy_files;
 mod output;
 mod picture;

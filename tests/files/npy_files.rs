@@ -11,7 +11,7 @@ fn npy(header: &str, data: &[u8]) -> Vec<u8> {
     [b"\x93NUMPY\x01\x00", length.as_slice(), header.as_bytes(), data].concat()
 }
 
-fn array(descr: &str, shape: &str, data: &[u8]) -> Vec<u8> {
+pub(crate) fn array(descr: &str, shape: &str, data: &[u8]) -> Vec<u8> {
     npy(&format!("{{'descr': '{descr}', 'fortran_order': False, 'shape': {shape}, }}\n"), data)
 }
 
@@ -33,6 +33,12 @@ fn every_dtype_in_both_byte_orders() {
     }
     samples!([1, 0, 100, 7, 2, 3], "u1" u8, "u2" u16, "u4" u32, "u8" u64, "i1" i8, "i2" i16, "i4" i32, "i8" i64);
     samples!([1., 0., 100., 7., 2., 3.], "f4" f32, "f8" f64);
+    // Halves by hand: 1 is 2^0, 100 is 1.5625 * 2^6, 7 is 1.75 * 2^2, 2 is 2^1, 3 is 1.5 * 2^1.
+    let halves = [0x3c00_u16, 0, 0x5640, 0x4700, 0x4000, 0x4200];
+    let little: Vec<u8> = halves.iter().flat_map(|half| half.to_le_bytes()).collect();
+    let big: Vec<u8> = halves.iter().flat_map(|half| half.to_be_bytes()).collect();
+    assert_eq!(read("a.npy", &array("<f2", "(2, 3)", &little)).unwrap(), expected());
+    assert_eq!(read("a.npy", &array(">f2", "(2, 3)", &big)).unwrap(), expected());
 
     assert_eq!(read("a.npy", &array("|u1", "(2, 3)", &[1, 0, 100, 7, 2, 3])).unwrap(), expected());
     let mask = Image::from_values(UVec2::new(2, 1), vec![1, 0]);
@@ -49,6 +55,19 @@ fn fortran_order_is_column_after_column() {
 fn other_spellings_of_the_header() {
     let header = "{\"shape\" : (2,3),\"fortran_order\":False,\"descr\":\"|u1\"}";
     assert_eq!(read("a.npy", &npy(header, &[1, 0, 100, 7, 2, 3])).unwrap(), expected());
+
+    // As Python 2 writes them, and as numpy.save does where others do not.
+    for header in [
+        "{'descr': '|u1', 'fortran_order': False, 'shape': (2L, 3L), }",
+        "{'descr': '|u1', 'fortran_order': False, 'shape': (2L, 3L)}          \n",
+        "{u'descr': u'|u1', u'fortran_order': False, u'shape': (2, 3)}",
+        "{u\"descr\": u\"|u1\", u\"fortran_order\": False, u\"shape\": (2l, 3l,), }",
+        "{'descr': b'|u1', 'fortran_order': False, 'shape': (2, 3)}",
+        "{ 'descr' :\t'|u1' ,\n 'fortran_order' : False , 'shape' : ( 2 , 3 , ) , }",
+        "{'shape': (2, 3), 'descr': '|u1', 'fortran_order': False}",
+    ] {
+        assert_eq!(read("a.npy", &npy(header, &[1, 0, 100, 7, 2, 3])).unwrap(), expected(), "{header}");
+    }
 
     let header = "{'descr': '|u1', 'fortran_order': False, 'shape': (2, 3), }\n";
     let length = u32::try_from(header.len()).unwrap().to_le_bytes();
@@ -92,6 +111,11 @@ fn values_that_are_no_counts() {
     assert_refused(read("a.npy", &negative), &["(1, 0)", "-1, negative", "1 of 2"]);
     let large = array("<u8", "(1, 1)", &[0, 0, 0, 0, 1, 0, 0, 0]);
     assert_refused(read("a.npy", &large), &["(0, 0)", "4294967296, above"]);
+    // 1.5, and the largest half is a count; infinity is 2^16 by its exponent.
+    assert_refused(read("a.npy", &array("<f2", "(1, 1)", &[0x00, 0x3e])), &["is 1.5, not a whole number"]);
+    assert_refused(read("a.npy", &array(">f2", "(1, 1)", &[0x7c, 0x00])), &["is inf, infinite"]);
+    assert_refused(read("a.npy", &array(">f2", "(1, 1)", &[0x7e, 0x00])), &["is NaN, not a number"]);
+    assert_eq!(read("a.npy", &array(">f2", "(1, 1)", &[0x7b, 0xff])).unwrap().values(), [65504]);
     let f4 = array("<f4", "(1, 1)", &0.1_f32.to_le_bytes());
     assert_refused(read("a.npy", &f4), &["is 0.1, not a whole number"]);
 }
@@ -105,7 +129,7 @@ fn the_first_refused_pixel_is_that_of_the_image_in_fortran_order_too() {
 
 #[test]
 fn arrays_that_are_no_map() {
-    for dtype in ["<f2", "<c8", "<U5", "|S4", "|O", "<m8[s]", "<f16", "<u3", "=u4", "", "u", "<é4"] {
+    for dtype in ["<c8", "<U5", "|S4", "|O", "<m8[s]", "<f16", "<u3", "=u4", "", "u", "<é4"] {
         assert_refused(read("a.npy", &array(dtype, "(2, 3)", &[0; 64])), &[dtype, "dtype", "astype"]);
     }
     let structured = npy("{'descr': [('a', '<u4')], 'fortran_order': False, 'shape': (1, 1), }", &[0; 4]);
@@ -128,6 +152,8 @@ fn headers_that_claim_too_much() {
     assert_refused(claims("(18446744073709551615, 2)"), &["18446744073709551615", "65536 a side"]);
     assert_refused(claims("(99999999999999999999, 2)"), &["\"shape\""]);
     assert_refused(claims("(-1, 2)"), &["\"shape\""]);
+    assert_refused(claims("(1LL, 2)"), &["\"shape\""]);
+    assert_refused(claims("(L, 2)"), &["\"shape\""]);
     assert_refused(claims("(16385, 16384)"), &["16384 x 16385", "268435456 in all"]);
     assert_refused(claims("(16384, 16384)"), &["truncated", "2147483648 bytes", "has 8"]);
 
@@ -136,9 +162,17 @@ fn headers_that_claim_too_much() {
 }
 
 #[test]
-fn lengths_that_do_not_fit_the_header() {
+fn data_that_ends_too_early() {
     assert_refused(read("a.npy", &array("<u2", "(2, 3)", &[0; 11])), &["truncated", "12 bytes", "has 11"]);
-    assert_refused(read("a.npy", &array("<u2", "(2, 3)", &[0; 13])), &["too long", "12 bytes", "has 13"]);
+}
+
+#[test]
+fn what_follows_the_data_is_not_read() {
+    // As numpy.load does with the first of several arrays in a file.
+    let first = array("|u1", "(2, 3)", &[1, 0, 100, 7, 2, 3]);
+    let second = array("<f8", "(1,)", &[0xff; 8]);
+    assert_eq!(read("a.npy", &[first.clone(), second].concat()).unwrap(), expected());
+    assert_eq!(read("a.npy", &[first, vec![0]].concat()).unwrap(), expected());
 }
 
 #[test]

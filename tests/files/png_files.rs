@@ -5,10 +5,10 @@ use varikernel::image::Image;
 
 use crate::{assert_refused, read, small_map, written};
 
-const GREY: u8 = 0;
+pub(crate) const GREY: u8 = 0;
 
 /// A chunk with its checksum.
-fn chunk(name: [u8; 4], data: &[u8]) -> Vec<u8> {
+pub(crate) fn chunk(name: [u8; 4], data: &[u8]) -> Vec<u8> {
     let content = [name.as_slice(), data].concat();
     let checksum = !content.iter().fold(u32::MAX, |sum, &byte| {
         (0..8).fold(sum ^ u32::from(byte), |sum, _| (sum >> 1) ^ if sum & 1 == 1 { 0xedb8_8320 } else { 0 })
@@ -28,7 +28,7 @@ fn stored(bytes: &[u8]) -> Vec<u8> {
 }
 
 /// A PNG of `size` with `bits` and colour type; each row begins with its filter, 0. `extra` comes before the pixels.
-fn png(size: (u32, u32), bits: u8, colours: u8, rows: &[u8], extra: &[u8]) -> Vec<u8> {
+pub(crate) fn png(size: (u32, u32), bits: u8, colours: u8, rows: &[u8], extra: &[u8]) -> Vec<u8> {
     let header = [size.0.to_be_bytes().as_slice(), &size.1.to_be_bytes(), &[bits, colours, 0, 0, 0]].concat();
     [
         b"\x89PNG\r\n\x1a\n",
@@ -54,7 +54,7 @@ fn grey_levels_are_counts() {
 fn fewer_bits_are_refused_and_not_rescaled() {
     for bits in [1, 2, 4] {
         let refused = read("a.png", &png((2, 1), bits, GREY, &[0, 0x50], &[]));
-        assert_refused(refused, &[&format!("grey with {bits} bits"), "8 or 16 bits"]);
+        assert_refused(refused, &[&format!("grey with {bits} bit"), "8 or 16 bits"]);
     }
 }
 
@@ -92,6 +92,18 @@ fn headers_that_claim_too_much() {
 }
 
 #[test]
+fn what_follows_the_end_is_not_read() {
+    let whole = png((2, 1), 8, GREY, &[0, 3, 255], &[]);
+    let two = Image::from_values(UVec2::new(2, 1), vec![3, 255]);
+    for tail in [b"\0".as_slice(), b"more", "long".repeat(20_000).as_bytes(), &chunk(*b"IDAT", &[0; 40])] {
+        assert_eq!(read("a.png", &[&whole, tail].concat()).unwrap(), two);
+    }
+    // A chunk that no reader knows may come before the end, and be of any length.
+    let note = chunk(*b"teXt", "long".repeat(5000).as_bytes());
+    assert_eq!(read("a.png", &png((2, 1), 8, GREY, &[0, 3, 255], &note)).unwrap(), two);
+}
+
+#[test]
 fn damaged_files_are_refused() {
     let whole = png((2, 1), 8, GREY, &[0, 3, 255], &[]);
     let mut wrong_pixel = whole.clone();
@@ -99,7 +111,9 @@ fn damaged_files_are_refused() {
     wrong_pixel[data + 13] ^= 1;
     assert_refused(read("a.png", &wrong_pixel), &["damaged"]);
     assert_refused(read("a.png", &png((2, 2), 8, GREY, &[0, 3, 255], &[])), &["damaged"]);
-    assert_refused(read("a.png", &[&whole, b"more".as_slice()].concat()), &["IEND"]);
+    for length in [whole.len() - 1, whole.len() - 11, whole.len() - 12, whole.len() - 20] {
+        assert_refused(read("a.png", &whole[..length]), &["truncated"]);
+    }
     let other_first = [&whole[..8], &chunk(*b"tEXt", b"Title\0density map"), &whole[8..]].concat();
     assert_refused(read("a.png", &other_first), &["begin with its header"]);
 }

@@ -5,7 +5,7 @@ use varikernel::measure::Difference;
 use varikernel::settings::{Edges, Method, Order, Search, Settings, Split, Storage};
 use varikernel::{Image, reference};
 
-use crate::support::{assert_same, egl, on_gpu, osmesa, random_map, search, sparse_map};
+use crate::support::{assert_same, each, egl, on_gpu, random_map, search, sparse_map};
 
 /// Figures 3.2 to 3.4: 9 photons within radius 1 and 41 within radius 2 of the star at (3, 3), whose own quadrant is
 /// thin; 25 are needed.
@@ -43,8 +43,7 @@ fn the_naive_mipmap_finds_radius_4_where_2_is_right_as_in_figure_3_3() {
 
 #[test]
 fn the_naive_mipmap_equals_its_reference_and_keeps_its_one_sided_bound() {
-    for gl in [egl, osmesa] {
-        let gl = gl();
+    for gl in each() {
         for density in [
             figure_3_3(),
             random_map(1, 1, 3),
@@ -95,8 +94,7 @@ fn averaged(search: Search, split: Split) -> Settings {
 #[test]
 fn averaged_mipmaps_are_exact_on_powers_of_two_with_a_box_filter() {
     // Mesa halves with a 2 x 2 box, in f32: averages of whole numbers are then exact.
-    for gl in [egl, osmesa] {
-        let gl = gl();
+    for gl in each() {
         for density in [random_map(64, 64, 3), sparse_map(128, 128), random_map(32, 64, 4), figure_3_3()] {
             for split in [Split::Odd, Split::Larger] {
                 for order in [Order::Forward, Order::Binary] {

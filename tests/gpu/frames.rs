@@ -10,9 +10,7 @@ use varikernel::{
     RadiusPipeline, reference,
 };
 
-use crate::support::{
-    Random, assert_same, egl, exact_variants, osmesa, random_map, search, sparse_map, spike,
-};
+use crate::support::{Random, assert_same, each, egl, exact_variants, random_map, search, sparse_map, spike};
 
 fn read(radii: &RadiusMap) -> reference::Radii {
     reference::Radii { radius: radii.read().unwrap(), limited: radii.read_limited().unwrap().unwrap() }
@@ -42,8 +40,7 @@ fn variants(search: Search) -> [Settings; 4] {
 
 #[test]
 fn masked_pixels_get_zero_and_all_others_their_radius() {
-    for open in [egl, osmesa] {
-        let gl = open();
+    for gl in each() {
         for density in [random_map(1, 1, 4), sparse_map(140, 67), spike(66, 71)] {
             let size = density.size();
             let mut random = Random(7);
@@ -131,8 +128,7 @@ pub(crate) fn depth_and_stencil(gl: &Gl, size: UVec2) -> glow::Texture {
 
 #[test]
 fn depth_and_stencil_of_a_host_become_a_mask() {
-    for open in [egl, osmesa] {
-        let gl = open();
+    for gl in each() {
         let density = sparse_map(140, 67);
         let question = search(9, 12, Edges::Scale);
         let expected = reference::radius_by_table(&density, question);

@@ -16,7 +16,7 @@ use varikernel::{
 };
 
 use crate::stage::{relative_difference, shown, traced};
-use crate::support::{egl, osmesa};
+use crate::support::{each, egl};
 
 const SIDE: u32 = 48;
 
@@ -102,8 +102,7 @@ fn rgb(image: &Image<[f32; 4]>) -> Image<[f32; 3]> {
 
 #[test]
 fn a_host_gets_the_irradiance_of_the_renderer_to_the_last_bit() {
-    for gl in [egl, osmesa] {
-        let gl = gl();
+    for gl in each() {
         let mut stand = Stand::new(&gl, 3000);
         let points = stand.uploaded(&gl);
         for radius in [RadiusChoice::Variable, RadiusChoice::Fixed(3)] {

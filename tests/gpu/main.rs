@@ -1,4 +1,4 @@
-//! The library on real contexts: EGL and OSMesa. A missing context fails the tests with the reason.
+//! The library on real contexts: EGL, and OSMesa where that can be had. A missing context fails the tests with the reason.
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
@@ -14,6 +14,8 @@ mod exactness;
 mod faults;
 mod frame_path;
 mod frames;
+#[cfg(feature = "render")]
+mod furnace;
 mod host;
 mod host_picture;
 mod interface;
@@ -27,6 +29,8 @@ mod live;
 mod lost;
 mod memory;
 mod objects;
+#[path = "../common/osmesa.rs"]
+mod osmesa;
 #[cfg(feature = "render")]
 mod picture;
 mod radius;

@@ -93,7 +93,9 @@ fn every_exact_variant_equals_the_definition_on_egl() {
 
 #[test]
 fn every_exact_variant_equals_the_definition_on_osmesa() {
-    agree_everywhere(&osmesa());
+    if let Some(gl) = osmesa() {
+        agree_everywhere(&gl);
+    }
 }
 
 #[test]

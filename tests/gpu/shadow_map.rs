@@ -207,3 +207,19 @@ fn sizes_do_not_matter_and_nothing_is_lit_from_behind() {
     let lit = picture(&gl, &lamp_and_wall(&turned, ""), 7, DirectLight::ShadowMap, 3);
     assert!(lit.direct.values().iter().flatten().all(|&value| value > 0.0));
 }
+
+/// A plate close above the wall, in a scene that reaches 10^4 times as far: what is small casts its shadow all the same.
+#[test]
+fn a_small_thing_casts_a_shadow_in_a_large_scene() {
+    let gl = egl();
+    let far = "[surfaces.far]\nmaterial = \"white\"\nquads = [[[-1e4, -9, 1e4], [1e4, -9, 1e4], [1e4, -9, -1e4], [-1e4, -9, -1e4]]]";
+    let plate = "[surfaces.plate]\nmaterial = \"white\"\nquads = [\
+                 [[0.1, 0.1, -0.99], [0.4, 0.1, -0.99], [0.4, 0.4, -0.99], [0.1, 0.4, -0.99]]]";
+    let lamp = POINT.replace("[0, 0, 1]", "[-3, 0.3, -0.5]").replace("[0, 0, -1]", "[1, 0, 0]");
+    let [traced, mapped] = [DirectLight::Traced, DirectLight::ShadowMap]
+        .map(|direct| picture(&gl, &lamp_and_wall(&lamp, &format!("{far}\n{plate}")), 96, direct, 1).direct);
+    let differ = differing(&traced, &mapped, 1e-3);
+    assert!(differ <= 10, "{differ} of 9216 pixels, all at edges");
+    let without = picture(&gl, &lamp_and_wall(&lamp, far), 96, DirectLight::ShadowMap, 1);
+    assert!(differing(&traced, &without.direct, 1e-3) > 30, "a plate that is left out is seen");
+}

@@ -12,7 +12,7 @@ use varikernel::{CountBounds, DensityMap, Gl, RadiusPipeline};
 
 use crate::calls::{Calls, counted};
 use crate::driver::{self, RENDERER};
-use crate::support::{egl, osmesa, random_map, search};
+use crate::support::{each, egl, random_map, search};
 
 /// A table of 20 x 9 by doubling, and a search by halving.
 fn settings() -> Settings {
@@ -41,8 +41,7 @@ fn labels(stages: &[(String, Duration)]) -> Vec<&str> {
 
 #[test]
 fn stages_come_in_the_order_of_their_passes_each_once() {
-    for gl in [egl, osmesa] {
-        let gl = gl();
+    for gl in each() {
         let (map, mut pipeline) = prepared(&gl, settings());
         let mut times = StageTimes::new(&gl).unwrap();
         assert!(times.waits() && gl.info().is_llvmpipe());

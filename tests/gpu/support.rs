@@ -8,6 +8,8 @@ use varikernel::settings::{
 };
 use varikernel::{CountBounds, DensityMap, Gl, Image, RadiusPipeline, exactness, reference};
 
+use crate::osmesa::osmesa_is_here;
+
 /// The first EGL device that works, or the reason why none does.
 pub(crate) fn egl() -> Gl {
     context::open(&DeviceChoice::Egl(None)).unwrap_or_else(|error| panic!("{error}"))
@@ -21,9 +23,18 @@ pub(crate) fn working_candidates() -> Vec<Candidate> {
     working
 }
 
-/// OSMesa, or the reason why it does not work.
-pub(crate) fn osmesa() -> Gl {
-    context::open(&DeviceChoice::OsMesa).unwrap_or_else(|error| panic!("{error}"))
+/// OSMesa, or the reason why it does not work; nothing where it can't be had, which is said.
+#[track_caller]
+pub(crate) fn osmesa() -> Option<Gl> {
+    osmesa_is_here().then(|| context::open(&DeviceChoice::OsMesa).unwrap_or_else(|error| panic!("{error}")))
+}
+
+/// EGL and then OSMesa, where it can be had: a context after the other, since a thread has one at a time.
+#[track_caller]
+pub(crate) fn each() -> impl Iterator<Item = Gl> {
+    let osmesa_too = osmesa_is_here();
+    let names = [true, false].into_iter().filter(move |is_egl| *is_egl || osmesa_too);
+    names.filter_map(|is_egl| if is_egl { Some(egl()) } else { osmesa() })
 }
 
 /// A small generator of our own words: SplitMix64 (Steele, Lea, Flood 2014).

@@ -55,7 +55,7 @@ fn a_table_built_from_unfinished_texels_equals_the_definition() {
 
 #[test]
 fn every_variation_equals_the_definition_on_osmesa() {
-    let gl = osmesa();
+    let Some(gl) = osmesa() else { return };
     for variation in Variation::ALL {
         agree(&gl, "37x20", &random_map(37, 20, 3), &varied(variation, search(25, 32, Edges::Scale)));
     }

@@ -88,7 +88,8 @@ fn mistakes_are_told_before_anything_is_timed() {
     refused("--sizes 0", "a side goes from 1");
     refused("--map no-such-kind", "neither a readable file nor one of");
     refused("--budget 5", "time unit");
-    refused("--min-photons 0", "0 is not in");
+    refused("--min-photons 0", "give a whole number from 1 to 4294967295");
+    refused("--max-radius -3", "give a whole number from 1 to 32767");
     refused("--json /no/such/folder/run.json", "/no/such/folder does not exist");
     refused("--resume /no/such/run.json", "/no/such does not exist");
 }

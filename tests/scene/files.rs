@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 use varikernel::glam::Vec3;
-use varikernel::scene::{LightShape, Scattering, Scene};
+use varikernel::scene::{AreaLight, LightShape, Scattering, Scene};
 
 use crate::{BARE, load, shipped_text};
 
@@ -60,7 +60,7 @@ fn the_cornell_boxes_hold_the_committed_numbers() {
         assert_eq!(scene.lights().len(), 1);
         assert_eq!(
             scene.lights()[0].shape,
-            LightShape::Area { triangles: found, radiance: vector(&lamp["radiance"]) }
+            LightShape::Area(AreaLight::new(found, vector(&lamp["radiance"]), None))
         );
         assert_eq!(geometry.spheres.len(), spheres.len());
         for (found, expected) in geometry.spheres.iter().zip(spheres) {
@@ -199,6 +199,26 @@ fn scenes_that_are_no_files_or_no_text_are_refused() {
     assert!(message("").contains("is a folder"));
     std::fs::write(folder.path().join("bytes.toml"), b"title = \"\xff\"").unwrap();
     assert!(message("bytes.toml").contains("byte 9 is not text"));
+    for text in [b"\xff\xfet\0=\0".as_slice(), b"\xfe\xff\0t\0=", b"t\0=\0", b"\0t\0="] {
+        std::fs::write(folder.path().join("wide.toml"), text).unwrap();
+        let message = message("wide.toml");
+        assert!(
+            message.contains("wide.toml: it is text in UTF-16\nhelp: save it again as UTF-8"),
+            "{message}"
+        );
+    }
     std::fs::write(folder.path().join("empty.toml"), b"").unwrap();
     assert!(message("empty.toml").contains("missing field `camera`"));
+}
+
+#[test]
+fn a_scene_file_may_have_a_byte_order_mark_and_ends_of_lines_as_on_windows() {
+    let text = shipped_text("cornell_empty.toml");
+    let plain = load(&text).unwrap();
+    for changed in [format!("\u{feff}{text}"), text.replace('\n', "\r\n")] {
+        assert_eq!(load(&changed).unwrap().geometry(), plain.geometry());
+        let wrong = changed.replace("position = [278", "position = [nan");
+        let message = load(&wrong).unwrap_err().to_string();
+        assert!(message.contains("line 5, camera.position"), "{message}");
+    }
 }

@@ -5,12 +5,17 @@
 #![expect(clippy::float_cmp, reason = "where numbers are compared without a margin, they are exact")]
 
 mod cast;
+mod exported;
 mod files;
 mod gltf;
+mod lights;
 mod meshes;
+mod mtl;
+mod obj;
 mod optics;
 mod physics;
 mod shapes;
+mod smooth;
 mod tracing;
 
 use std::fs;
@@ -25,7 +30,9 @@ use varikernel::scene::Scene;
 fn load_with(text: &str, others: &[(&str, &[u8])]) -> Result<Scene> {
     let folder = TempDir::new().unwrap();
     for (name, content) in others {
-        fs::write(folder.path().join(name), content).unwrap();
+        let path = folder.path().join(name);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, content).unwrap();
     }
     let path = folder.path().join("scene.toml");
     fs::write(&path, text).unwrap();

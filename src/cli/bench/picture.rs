@@ -5,7 +5,6 @@ use std::path::Path;
 use std::time::Duration;
 
 use anyhow::{Result, bail};
-use varikernel::context;
 use varikernel::image::{check_writable, write_atomically};
 use varikernel::measure::bench::{PictureReport, PictureSuite};
 use varikernel::render::Progress;
@@ -13,7 +12,8 @@ use varikernel::render::Progress;
 use super::table::{align_right, device_facts, new_table, three_digits};
 use super::{Args, targets};
 use crate::cli::render::Bar;
-use crate::cli::{Outcome, output};
+use crate::cli::saving::{Autosave, Resume, how_to_go_on};
+use crate::cli::{Outcome, device, output};
 
 pub(super) fn run(args: &Args) -> Result<Outcome> {
     let &[size] = args.sizes.as_slice() else {
@@ -35,19 +35,25 @@ pub(super) fn run(args: &Args) -> Result<Outcome> {
     if let Some(path) = &args.json {
         check_writable(path)?;
     }
-    let gl = context::open(&args.device)?;
+    let gl = device::open(&args.device)?;
     let budget = args.budget.unwrap_or(Duration::from_mins(1));
     let usual = PictureSuite::default();
     let photons = args.photons.unwrap_or(usual.photons);
     let suite = PictureSuite { size: size.to_array(), photons, ..usual };
     let bar = Bar::new();
+    let mut autosave = Autosave::new(Duration::ZERO);
     let report = suite.run(&gl, budget, &mut |report, done| {
         bar.show(Progress { stage: "bench", done });
-        args.json.as_ref().map_or(Ok(()), |path| save(report, path))
+        if let Some(path) = &args.json {
+            autosave.save_if_due(|| save(report, path));
+        }
+        Ok(())
     })?;
     bar.finish();
+    let saved = args.json.as_ref().map_or(Ok(()), |path| save(&report, path));
     print(&report)?;
     targets::print(&report.targets)?;
+    saved.map_err(|error| how_to_go_on(error, &Resume::Anew))?;
     Ok(Outcome::Done)
 }
 

@@ -1,15 +1,14 @@
 //! The files of a picture: EXR with its layers, or PNG.
 
-use anyhow::Result;
 use varikernel::image::{Attribute, Format, LayerFile, write_colours};
 use varikernel::render::Layers;
 
 use super::Args;
 
-pub(super) fn write(args: &Args, layers: &Layers, attributes: &[Attribute]) -> Result<()> {
+pub(super) fn write(args: &Args, layers: &Layers, attributes: &[Attribute]) -> varikernel::Result<()> {
     let path = &args.output;
     if Format::of(path)? == Format::Png {
-        return Ok(write_colours(path, &args.source.tone_map(&layers.beauty).apply(&layers.beauty))?);
+        return write_colours(path, &args.source.tone_map(&layers.beauty).apply(&layers.beauty));
     }
     let (rgb, xyz) = (['R', 'G', 'B'], ['X', 'Y', 'Z']);
     #[expect(clippy::cast_precision_loss, reason = "radii are at most 96")]
@@ -24,7 +23,7 @@ pub(super) fn write(args: &Args, layers: &Layers, attributes: &[Attribute]) -> R
         .values("radius", &radius)
         .values("limited", &layers.limited.map(f32::from))
         .values("depth", &layers.depth);
-    Ok(file.write(path, attributes)?)
+    file.write(path, attributes)
 }
 
 /// What made the picture, for its file.

@@ -1,6 +1,6 @@
 //! `varikernel render --reference`: seeds averaged, saved as it goes.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use anyhow::{Result, bail};
 use varikernel::Gl;
@@ -11,6 +11,7 @@ use varikernel::settings::PictureSettings;
 
 use super::files::{reference_attributes, write};
 use super::{Args, Bar, in_words_of_options};
+use crate::cli::saving::{Autosave, Resume, how_to_go_on};
 use crate::cli::{Outcome, output};
 
 /// A reference that takes long is saved as often as this.
@@ -30,7 +31,10 @@ pub(super) fn render(
     let trace = args.source.trace();
     let bar = Bar::new();
     let mut reference = Reference::new(gl, scene, settings, &mut |progress| bar.show(progress))?;
-    let mut saved = Instant::now();
+    let mut autosave = Autosave::new(SAVE_EVERY);
+    let save = |reference: &Reference, seeds: u32| {
+        write(args, &reference.picture()?, &reference_attributes(args, &scene.title, seeds))
+    };
     for seed in 0..seeds {
         // The seed itself is that of the picture, which a reference must not know.
         let trace = TraceSettings { seed: trace.seed.wrapping_add(1 + u64::from(seed)), ..trace };
@@ -39,11 +43,11 @@ pub(super) fn render(
             bar.show(Progress { stage: "reference", done });
         };
         reference.add_seed(scene, &trace, &mut show).map_err(in_words_of_options)?;
-        if seed + 1 == seeds || saved.elapsed() > SAVE_EVERY {
-            write(args, &reference.picture()?, &reference_attributes(args, &scene.title, seed + 1))?;
-            saved = Instant::now();
+        if seed + 1 < seeds {
+            autosave.save_if_due(|| save(&reference, seed + 1));
         }
     }
+    save(&reference, seeds).map_err(|error| how_to_go_on(error, &Resume::Anew))?;
     bar.finish();
     if args.json {
         let report = serde_json::json!({

@@ -26,7 +26,9 @@ pub(super) struct Report<'a> {
 }
 
 pub(super) fn print(report: &Report<'_>) -> Result<()> {
-    let Account { emitted, landings, uploaded, contributing, fragments, limited_share, .. } = report.account;
+    let Account {
+        emitted, landings, uploaded, contributing, fragments, limited_share, cut_off_share, ..
+    } = report.account;
     #[expect(clippy::cast_precision_loss, reason = "counts are below 2^53")]
     let share = 100.0 * contributing as f64 / (landings as f64).max(1.0);
     let mut facts = vec![
@@ -43,6 +45,14 @@ pub(super) fn print(report: &Report<'_>) -> Result<()> {
     if report.settings.radius == RadiusChoice::Variable {
         facts
             .push(("limited", format!("{:.3} % of the pixels found too few photons", 100.0 * limited_share)));
+    }
+    if cut_off_share >= 0.0005 {
+        let share = 100.0 * cut_off_share;
+        let landings = report.photons.bounces;
+        facts.push((
+            "cut off",
+            format!("{share:.1} % of the power after {landings} landings; --bounces takes more"),
+        ));
     }
     facts.extend([
         ("energy", format!("kept to {:.1e}", report.energy_error)),

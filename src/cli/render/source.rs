@@ -10,6 +10,7 @@ use varikernel::photon::TraceSettings;
 use varikernel::settings::{Kernel, PictureSettings};
 use varikernel::{Error, Image};
 
+use crate::cli::numbers::{fraction, whole, whole_checked_later};
 use crate::cli::photons::parse_count;
 use crate::cli::synth::parse_size;
 
@@ -25,23 +26,26 @@ pub(in crate::cli) struct Source {
     pub(in crate::cli) size: UVec2,
 
     /// Photons that leave the lights; 1e6 is a million.
-    #[arg(long, default_value = "1e6", value_parser = parse_count, value_name = "NUMBER")]
+    #[arg(long, default_value = "1e6", value_parser = parse_count, value_name = "NUMBER", allow_negative_numbers = true)]
     pub(in crate::cli) photons: u32,
 
     /// Diffuse landings after which a photon is followed no further.
-    #[arg(long, default_value_t = 8, value_name = "NUMBER")]
+    #[arg(long, default_value_t = 8, value_name = "NUMBER", value_parser = whole_checked_later(1..=u32::MAX))]
+    #[arg(allow_negative_numbers = true)]
     pub(in crate::cli) bounces: u32,
 
     /// A whole number; the same seed gives the same picture.
-    #[arg(long, default_value_t = 1, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 1, value_parser = whole(0..=u64::MAX), allow_negative_numbers = true)]
     pub(in crate::cli) seed: u64,
 
     /// n: photons that a kernel has to hold, at least 1.
     #[arg(short = 'n', long, default_value_t = 400, value_name = "N", allow_negative_numbers = true)]
+    #[arg(value_parser = whole_checked_later(1..=u32::MAX))]
     pub(in crate::cli) min_photons: u32,
 
     /// MR: the largest radius, in pixels, 1 to 96.
     #[arg(short = 'r', long, default_value_t = 64, value_name = "MR", allow_negative_numbers = true)]
+    #[arg(value_parser = whole_checked_later(1..=96_u32))]
     pub(in crate::cli) max_radius: u32,
 
     /// Falloff of a kernel from its middle to its edge.
@@ -49,11 +53,12 @@ pub(in crate::cli) struct Source {
     pub(in crate::cli) kernel: Kernel,
 
     /// Shadow rays for each pixel and area light; places with shadow maps on each, with --direct shadow-map.
-    #[arg(long, default_value_t = 16, value_name = "NUMBER")]
+    #[arg(long, default_value_t = 16, value_name = "NUMBER", allow_negative_numbers = true)]
+    #[arg(value_parser = whole_checked_later(1..=u32::MAX))]
     pub(in crate::cli) light_samples: u32,
 
     /// Brightness of a PNG, in stops: each doubles the light [default: what suits the picture].
-    #[arg(long, value_name = "STOPS", allow_negative_numbers = true)]
+    #[arg(long, value_name = "STOPS", value_parser = fraction::<f32>("-1.5"), allow_negative_numbers = true)]
     pub(in crate::cli) exposure: Option<f32>,
 
     /// OpenGL device: auto, egl, egl:INDEX, osmesa, or part of a renderer's name.

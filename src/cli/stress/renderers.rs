@@ -4,20 +4,28 @@ use std::env;
 use std::process::Command;
 
 use anyhow::Result;
-use varikernel::context::{self, DeviceChoice};
+use varikernel::context::{self, DeviceChoice, Missing};
 use varikernel::error::Error;
 use varikernel::gl::Gl;
 use varikernel::measure::stress::{Bits, Found, Renderer};
 
+use crate::cli::device;
+
+/// Renderers of Mesa that have to be asked for, and how: its interpreter, and Zink, which draws through Vulkan (here lavapipe).
+const OTHERS: [(&str, &[(&str, &str)]); 2] = [
+    ("softpipe", &[("GALLIUM_DRIVER", "softpipe")]),
+    ("zink", &[("GALLIUM_DRIVER", "zink"), ("LIBGL_ALWAYS_SOFTWARE", "true")]),
+];
+
 /// Numbers of llvmpipe's threads.
 const THREADS: [&str; 3] = ["1", "2", "8"];
 
-/// The same maps here, on every other device, on Mesa's other software renderer, and with other numbers of threads.
+/// The same maps here, on every other device, on Mesa's other renderers, and with other numbers of threads.
 /// `show` is told which is next, and the done share.
 pub(super) fn all(gl: &Gl, times: u32, show: &mut dyn FnMut(&str, f64)) -> Result<Vec<Renderer>> {
     let (candidates, missing) = context::candidates();
     #[expect(clippy::cast_precision_loss, reason = "a few renderers")]
-    let count = (1 + candidates.len() + 1 + THREADS.len()) as f64;
+    let count = (1 + candidates.len() + OTHERS.len() + THREADS.len()) as f64;
     let mut told = 0.0;
     let mut tell = |name: &str| {
         show(name, told / count);
@@ -31,13 +39,14 @@ pub(super) fn all(gl: &Gl, times: u32, show: &mut dyn FnMut(&str, f64)) -> Resul
         tell(&name);
         all.push(Renderer { found: in_child(&name, &[], 1), name, of_threads: false });
     }
-    for reason in missing {
-        let name = reason.split(':').next().unwrap_or_default().to_owned();
-        all.push(Renderer { name, found: Found::NotThere(reason), of_threads: false });
+    for Missing { platform, refusal } in missing {
+        let found = Found::NotThere(refusal.reason);
+        all.push(Renderer { name: platform.to_string(), found, of_threads: false });
     }
-    tell("softpipe");
-    let softpipe = in_child("softpipe", &[("GALLIUM_DRIVER", "softpipe")], 1);
-    all.push(Renderer { name: "softpipe".to_owned(), found: softpipe, of_threads: false });
+    for (name, variables) in OTHERS {
+        tell(name);
+        all.push(Renderer { name: name.to_owned(), found: in_child(name, variables, 1), of_threads: false });
+    }
     for threads in THREADS {
         let name = format!("threads-{threads}");
         tell(&name);
@@ -50,9 +59,9 @@ pub(super) fn all(gl: &Gl, times: u32, show: &mut dyn FnMut(&str, f64)) -> Resul
 
 /// What a child prints: only where no context is to be had the device is not there; all else that goes wrong is an error.
 pub(super) fn found_here(device: &DeviceChoice, times: u32) -> Result<Found> {
-    match context::open(device) {
+    match device::open(device) {
         Ok(gl) => Ok(Found::Ran(Bits::of(&gl, times)?)),
-        Err(Error::NoContext(text)) => Ok(Found::NotThere(last_tried(&text).to_owned())),
+        Err(Error::NoContext { reason, .. }) => Ok(Found::NotThere(last_tried(&reason).to_owned())),
         Err(error) => Err(error.into()),
     }
 }
@@ -83,11 +92,9 @@ fn answer(failure: Option<&str>, stdout: &[u8], stderr: &str) -> Found {
     serde_json::from_slice(stdout).unwrap_or_else(|error| Found::Failed(format!("no answer: {error}")))
 }
 
-/// The last of what was tried, or the first line.
-fn last_tried(text: &str) -> &str {
-    let mut lines = text.lines().map(str::trim);
-    let first = lines.next().unwrap_or_default();
-    lines.take_while(|line| !line.starts_with("help:")).last().unwrap_or(first)
+/// The last of what was tried.
+fn last_tried(reason: &str) -> &str {
+    reason.lines().next_back().unwrap_or_default().trim()
 }
 
 #[cfg(test)]
@@ -96,8 +103,7 @@ mod tests {
 
     #[test]
     fn the_reason_is_the_last_thing_that_was_tried() {
-        let text =
-            "no usable context; tried:\n  egl:0: is \"llvmpipe\"\n  osmesa: not found\nhelp: install\n";
+        let text = "no usable context; tried:\n  egl:0: is \"llvmpipe\"\n  osmesa: not found";
         assert_eq!(last_tried(text), "osmesa: not found");
         assert_eq!(last_tried("it broke"), "it broke");
     }

@@ -1,5 +1,7 @@
 //! Everything that a person may choose in the window, as saved settings hold it, and as options of the other verbs.
 
+mod check;
+
 use std::fs;
 use std::path::Path;
 
@@ -11,6 +13,8 @@ use varikernel::settings::{
     Edges, Exactness, IrradianceSettings, Kernel, Method, Order, RadiusChoice, Search, Settings,
 };
 use varikernel::view::Camera;
+
+use crate::cli::output::quoted;
 
 /// What is shown and how it is made.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -146,11 +150,12 @@ impl Choices {
     /// Reads choices that were saved.
     ///
     /// # Errors
-    /// If there is no such file, or it holds something else.
+    /// If there is no such file, it holds something else, or a number is out of its range.
     pub(super) fn load(path: &Path) -> Result<Self> {
         let text = fs::read_to_string(path).with_context(|| format!("{}: can't be read", path.display()))?;
         let file: File = serde_json::from_str(&text)
             .with_context(|| format!("{}: holds no settings of the window", path.display()))?;
+        file.choices.check().with_context(|| format!("{}: settings out of their range", path.display()))?;
         Ok(file.choices)
     }
 }
@@ -158,16 +163,6 @@ impl Choices {
 /// The word of an option.
 pub(super) fn word(value: impl ValueEnum + Copy) -> String {
     value.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
-}
-
-/// For a shell.
-fn quoted(text: &str) -> String {
-    let plain = |letter: char| letter.is_ascii_alphanumeric() || "-_./:".contains(letter);
-    if !text.is_empty() && text.chars().all(plain) {
-        text.to_owned()
-    } else {
-        format!("'{}'", text.replace('\'', "'\\''"))
-    }
 }
 
 #[cfg(test)]
@@ -195,6 +190,17 @@ mod tests {
             exposure: None,
             camera: None,
         }
+    }
+
+    #[test]
+    fn what_is_out_of_range_is_not_loaded() {
+        let folder = tempfile::TempDir::new().expect("a folder");
+        let path = folder.path().join("view.json");
+        choices().save(&path, String::new()).expect("saved");
+        let text = fs::read_to_string(&path).expect("read");
+        fs::write(&path, text.replace("\"exposure\": null", "\"exposure\": 1e39")).expect("written");
+        let error = Choices::load(&path).expect_err("infinite in f32");
+        assert!(format!("{error:#}").contains("choices.exposure"), "{error:#}");
     }
 
     #[test]

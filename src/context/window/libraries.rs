@@ -46,9 +46,10 @@ fn missing(libraries: &[(&str, &str)]) -> Result<()> {
         return Ok(());
     }
     let (names, packages) = (names.join(", "), packages.join(" "));
-    Err(Error::NoContext(format!(
-        "a window needs {names}, which can't be loaded\nhelp: on Debian or Ubuntu, sudo apt-get install {packages}"
-    )))
+    Err(Error::NoContext {
+        reason: format!("a window needs {names}, which can't be loaded"),
+        remedy: format!("on Debian or Ubuntu, sudo apt-get install {packages}"),
+    })
 }
 
 #[cfg(all(test, unix, not(target_vendor = "apple")))]

@@ -27,7 +27,7 @@ use winit::error::EventLoopError;
 use winit::event_loop::{ActiveEventLoop, EventLoop};
 use winit::window::{Window, WindowAttributes};
 
-use super::ThreadGuard;
+use super::{Refusal, ThreadGuard, environment};
 use crate::error::{Error, Result};
 use crate::gl::Gl;
 
@@ -48,7 +48,11 @@ pub fn event_loop() -> Result<EventLoop<()>> {
         // winit puts the line of its own source before the reason.
         let after = reason.split_once(".rs:").and_then(|(_, after)| after.split_once(": "));
         let reason = after.map_or(reason.as_str(), |(_, reason)| reason);
-        Error::NoContext(format!("no display to open a window on: {reason}"))
+        Error::NoContext {
+            reason: format!("no display to open a window on: {reason}"),
+            remedy: "set DISPLAY or WAYLAND_DISPLAY to a display that runs (`xvfb-run` makes one without a screen)"
+                .to_owned(),
+        }
     })
 }
 
@@ -190,12 +194,20 @@ fn context(
         // SAFETY: `_old` was just made current on this thread, and outlives the handle, which is dropped here.
         let found = unsafe { Gl::from_loader(|name| display.get_proc_address(name).cast()) };
         match found {
-            Err(found) => found,
+            Err(found) => match environment::obstacle(&environment::get) {
+                Some(refusal) => refusal.after(&Refusal::from(found).reason).into_error(),
+                None => found,
+            },
             Ok(_) => no_window("making an OpenGL 3.3 core context", &error),
         }
     })
 }
 
 fn no_window(step: &str, error: &dyn std::fmt::Display) -> Error {
-    Error::NoContext(format!("{step}: {error}"))
+    let symptom = format!("{step}: {error}");
+    let refusal = match environment::obstacle(&environment::get) {
+        Some(cause) => cause.after(&symptom),
+        None => environment::unexplained(&symptom),
+    };
+    refusal.into_error()
 }

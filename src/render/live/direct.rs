@@ -1,13 +1,11 @@
 //! Direct light that gets better: some shadow rays a step, the mean of all so far.
 
-use std::f64::consts::PI;
-
 use glam::{DVec3, UVec2, Vec3};
 use rayon::prelude::*;
 
 use crate::image::Image;
 use crate::render::add;
-use crate::render::direct::{Dice, irradiance};
+use crate::render::direct::{Dice, reflected};
 use crate::render::sight::{Place, Sight};
 use crate::scene::Scene;
 
@@ -32,7 +30,7 @@ pub(super) struct ProgressiveDirect {
 
 impl ProgressiveDirect {
     pub(super) fn new(size: UVec2, sight: Sight, seed: u64) -> Self {
-        let Sight { straight: mut places, bent, lights } = sight;
+        let Sight { straight: mut places, bent, lights, .. } = sight;
         let straight = places.len();
         places.extend(bent);
         let sums = vec![DVec3::ZERO; places.len()];
@@ -51,9 +49,7 @@ impl ProgressiveDirect {
             let done = self.done;
             places.zip(sums).enumerate().for_each(|(index, (place, sum))| {
                 let number = u32::try_from(done + index).expect("fewer than 2^32 places");
-                let arrives =
-                    irradiance(scene, place.position, place.normal, 1, &mut Dice::new(seed, number));
-                *sum += place.share.as_dvec3() * arrives / PI;
+                *sum += reflected(scene, place, 1, &mut Dice::new(seed, number));
             });
             left -= end - self.done;
             self.done = end;

@@ -64,8 +64,9 @@ struct Shown {
 impl Shown {
     fn new(stage: &SurfaceStage, scene: &Scene, settings: &LiveSettings) -> Result<Self> {
         let view = settings.view(scene);
-        let surfaces = stage.draw(scene, view)?;
+        let mut surfaces = stage.draw(scene, view)?;
         let sight = Sight::new(scene, &view);
+        sight.paint(&mut surfaces)?;
         let through = ProgressiveThrough::new(view, sight.bent.clone());
         Ok(Self { surfaces, direct: ProgressiveDirect::new(settings.size, sight, settings.seed), through })
     }
@@ -171,7 +172,7 @@ impl Live {
         lap("photons");
         shown.direct.step(scene, settings.shadow_rays_per_step);
         lap("direct light");
-        shown.through.step(scene, indirect, &settings.irradiance, scale);
+        shown.through.step(indirect, &settings.irradiance, scale);
         lap("mirrors and glass");
         points.replace(&seen)?;
         let irradiance = pipeline.add(&shown.surfaces, points)?;

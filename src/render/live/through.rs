@@ -5,7 +5,6 @@ use crate::photon::PhotonPoint;
 use crate::render::nearest::PhotonGrid;
 use crate::render::seen_through::{Wanted, seen_through};
 use crate::render::sight::Place;
-use crate::scene::Scene;
 use crate::settings::{IrradianceSettings, RadiusChoice};
 use crate::view::View;
 
@@ -37,13 +36,7 @@ impl ProgressiveThrough {
     }
 
     /// Takes in photons, whose powers times `scale` are those of all photons so far.
-    pub(super) fn step(
-        &mut self,
-        scene: &Scene,
-        photons: Vec<PhotonPoint>,
-        settings: &IrradianceSettings,
-        scale: f32,
-    ) {
+    pub(super) fn step(&mut self, photons: Vec<PhotonPoint>, settings: &IrradianceSettings, scale: f32) {
         if self.bent.is_empty() || self.photons.len() >= MOST {
             return;
         }
@@ -57,7 +50,7 @@ impl ProgressiveThrough {
             RadiusChoice::Variable => Wanted::Holding(search.min_photons, search.max_radius),
             RadiusChoice::Fixed(radius) => Wanted::Fixed(radius),
         };
-        let grid = PhotonGrid::new(&self.photons, scene.bounds());
+        let grid = PhotonGrid::new(&self.photons);
         let light = seen_through(&self.view, &self.bent, Some(&grid), wanted, settings.kernel);
         self.image = light.map(|[red, green, blue, alpha]| [scale * red, scale * green, scale * blue, alpha]);
     }

@@ -2,11 +2,12 @@
 
 mod gltf;
 mod obj;
+mod smooth;
 
-use glam::{DVec3, Vec2, Vec3};
+use glam::{Vec2, Vec3};
 
 use super::fields::{MAX_COORDINATE, has_area};
-use super::source::Files;
+use super::source::{self, Files};
 use super::{Geometry, Light, Material, Scattering, Triangle, Vertex};
 
 /// What is wrong with a mesh file, and what to do about it.
@@ -39,12 +40,13 @@ pub(super) struct Part {
     pub(super) material: Option<u32>,
 }
 
-/// Reads a mesh file, by its extension.
-pub(super) fn load(files: &Files, name: &str) -> Result<Mesh, Problem> {
+/// Reads a mesh file, by its extension. Where no materials are needed, faults in them are no errors.
+pub(super) fn load(files: &Files, name: &str, needs_materials: bool) -> Result<Mesh, Problem> {
     let unreadable = |problem| (problem, "paths count from the scene's folder and stay inside it");
+    let name = &source::normal_form(name).map_err(unreadable)?;
     let extension = name.rsplit_once('.').map_or("", |(_, extension)| extension).to_ascii_lowercase();
     let mesh = match extension.as_str() {
-        "obj" => obj::read(&files.read(name).map_err(unreadable)?, files, name)?,
+        "obj" => obj::read(&files.read(name).map_err(unreadable)?, files, name, needs_materials)?,
         "gltf" | "glb" => gltf::read(&files.read(name).map_err(unreadable)?, files, name)?,
         _ => {
             let problem = "the extension is not that of a known mesh format".to_owned();
@@ -93,38 +95,39 @@ pub(super) fn add(
     surface: u32,
     material: impl Fn(Option<u32>) -> u32,
 ) -> Result<(), Problem> {
-    let (mut added, mut dropped) = (0_usize, 0_usize);
+    let mut dropped = 0;
+    let mut whole = Vec::with_capacity(mesh.parts.len());
     for part in &mesh.parts {
-        if !part
-            .positions
-            .iter()
-            .all(|position| position.is_finite() && f64::from(position.abs().max_element()) <= MAX_COORDINATE)
-        {
+        let possible = |position: &Vec3| f64::from(position.abs().max_element()) <= MAX_COORDINATE;
+        if !part.positions.iter().all(|position| position.is_finite() && possible(position)) {
             return Err((format!("a coordinate is past {MAX_COORDINATE:e}"), "scale the mesh down"));
         }
+        let (with_area, flat): (Vec<[u32; 3]>, Vec<_>) =
+            part.triangles.iter().partition(|triangle| has_area(&part.corners(triangle)));
+        dropped += flat.len();
+        whole.push(with_area);
+    }
+    let added: usize = whole.iter().map(Vec::len).sum();
+    let normals = if smooth { smooth::normals(&mesh.parts, &whole) } else { Vec::new() };
+    for (number, (part, triangles)) in mesh.parts.iter().zip(whole).enumerate() {
         let material = material(part.material);
-        let corners = |triangle: &[u32; 3]| triangle.map(|vertex| part.positions[vertex as usize]);
-        let (whole, flat): (Vec<_>, Vec<_>) =
-            part.triangles.iter().partition(|triangle| has_area(&corners(triangle)));
-        (added, dropped) = (added + whole.len(), dropped + flat.len());
-        if !smooth {
-            for triangle in whole {
-                geometry.push_flat(corners(triangle), surface, material);
+        let Some(normals) = normals.get(number) else {
+            for triangle in triangles {
+                geometry.push_flat(part.corners(&triangle), surface, material);
                 let first = geometry.vertices.len() - 3;
-                for (vertex, &index) in geometry.vertices[first..].iter_mut().zip(triangle) {
+                for (vertex, index) in geometry.vertices[first..].iter_mut().zip(triangle) {
                     part.dress(index, vertex);
                 }
             }
             continue;
-        }
+        };
         let first = u32::try_from(geometry.vertices.len()).expect("fewer than 2^32 vertices fit into memory");
-        let normals = smooth_normals(part, &whole);
-        for (index, (&position, normal)) in (0..).zip(part.positions.iter().zip(normals)) {
+        for (index, (&position, &normal)) in (0..).zip(part.positions.iter().zip(normals)) {
             let mut vertex = Vertex::plain(position, normal);
             part.dress(index, &mut vertex);
             geometry.vertices.push(vertex);
         }
-        geometry.triangles.extend(whole.into_iter().map(|triangle| Triangle {
+        geometry.triangles.extend(triangles.into_iter().map(|triangle| Triangle {
             vertices: triangle.map(|vertex| first + vertex),
             surface,
             material,
@@ -145,6 +148,11 @@ pub(super) fn add(
 }
 
 impl Part {
+    /// Where the corners of a triangle are.
+    fn corners(&self, triangle: &[u32; 3]) -> [Vec3; 3] {
+        triangle.map(|vertex| self.positions[vertex as usize])
+    }
+
     /// Gives a vertex the colour and the texture coordinates of a position.
     fn dress(&self, index: u32, vertex: &mut Vertex) {
         let index = index as usize;
@@ -152,26 +160,6 @@ impl Part {
         vertex.coordinates =
             [0, 1].map(|kind: usize| self.coordinates[kind].get(index).copied().unwrap_or_default());
     }
-}
-
-/// The file's normals, or else the means of the faces around each vertex, by the angle that each has there, so that it does
-/// not matter how a face is cut into triangles.
-fn smooth_normals(part: &Part, triangles: &[&[u32; 3]]) -> Vec<Vec3> {
-    let mut sums = vec![DVec3::ZERO; part.positions.len()];
-    if part.normals.is_empty() {
-        for triangle in triangles {
-            let corners = triangle.map(|vertex| part.positions[vertex as usize].as_dvec3());
-            for (number, &vertex) in triangle.iter().enumerate() {
-                let to = |step: usize| corners[(number + step) % 3] - corners[number];
-                let (next, previous) = (to(1), to(2));
-                sums[vertex as usize] += next.cross(previous).normalize() * next.angle_between(previous);
-            }
-        }
-    } else {
-        sums = part.normals.iter().map(|normal| normal.as_dvec3()).collect();
-    }
-    // A vertex without faces is never asked for its normal.
-    sums.into_iter().map(|sum| sum.normalize_or(DVec3::Y).as_vec3()).collect()
 }
 
 /// The material, if its numbers are possible.

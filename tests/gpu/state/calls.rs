@@ -174,7 +174,7 @@ fn failing(watch: &Watch<'_>) {
     assert!(RadiusMap::borrow(gl, watch.textures[0], Some(watch.textures[0])).is_err());
     watch.unchanged("borrowing that fails");
     let failed = varikernel::gl::time(gl, || -> varikernel::Result<()> {
-        Err(Error::NoContext("work that fails".to_owned()))
+        Err(Error::NoContext { reason: "work that fails".to_owned(), remedy: String::new() })
     });
     assert!(failed.is_err());
     watch.unchanged("timing work that fails");

@@ -18,6 +18,7 @@ use glow::HasContext as _;
 use varikernel::{Gl, StatePolicy, context};
 
 use crate::frames;
+use crate::osmesa::osmesa_is_here;
 use crate::support::{random_map, working_candidates};
 use host::Host;
 use snapshot::Snapshot;
@@ -131,6 +132,13 @@ fn egl_choice() -> context::DeviceChoice {
     choices.find(|choice| matches!(choice, context::DeviceChoice::Egl(_))).unwrap()
 }
 
+/// That, and OSMesa where it can be had.
+#[track_caller]
+fn choices() -> Vec<context::DeviceChoice> {
+    let osmesa = osmesa_is_here().then_some(context::DeviceChoice::OsMesa);
+    [Some(egl_choice()), osmesa].into_iter().flatten().collect()
+}
+
 #[test]
 fn every_call_leaves_the_state_of_a_host_as_it_was_on_egl() {
     check_restore(&egl_choice());
@@ -138,7 +146,9 @@ fn every_call_leaves_the_state_of_a_host_as_it_was_on_egl() {
 
 #[test]
 fn every_call_leaves_the_state_of_a_host_as_it_was_on_osmesa() {
-    check_restore(&context::DeviceChoice::OsMesa);
+    if osmesa_is_here() {
+        check_restore(&context::DeviceChoice::OsMesa);
+    }
 }
 
 #[test]
@@ -148,7 +158,9 @@ fn every_call_leaves_defaults_behind_on_egl() {
 
 #[test]
 fn every_call_leaves_defaults_behind_on_osmesa() {
-    check_defaults(&context::DeviceChoice::OsMesa);
+    if osmesa_is_here() {
+        check_defaults(&context::DeviceChoice::OsMesa);
+    }
 }
 
 /// Handles of both policies on one context, in turns; a call of one policy inside of one of the other.
@@ -185,7 +197,7 @@ fn both_policies_live_side_by_side() {
 /// A stencil reference that the host set while it drew to no stencil, when drivers tell 0 for it.
 #[test]
 fn a_stencil_reference_is_kept_that_cannot_be_asked_for() {
-    for choice in [egl_choice(), context::DeviceChoice::OsMesa] {
+    for choice in choices() {
         let host = Host::new(&choice);
         let textures = borrowed_textures(&host);
         let glow = host.gl.glow();

@@ -4,7 +4,7 @@ use glow::HasContext as _;
 use varikernel::{Error, Frame, StatePolicy};
 
 use super::host::Host;
-use super::{Watch, borrowed_textures, calls, egl_choice};
+use super::{Watch, borrowed_textures, calls, choices};
 use varikernel::{AdaptivePipeline, MaskMaker, context};
 
 /// Begins a query of the host, calls, ends it, and gives its result.
@@ -90,7 +90,7 @@ fn check(choice: &context::DeviceChoice, policy: StatePolicy) {
 
 #[test]
 fn a_running_query_of_the_host_is_not_disturbed() {
-    for choice in [egl_choice(), context::DeviceChoice::OsMesa] {
+    for choice in choices() {
         for policy in [StatePolicy::Restore, StatePolicy::Defaults] {
             check(&choice, policy);
         }
