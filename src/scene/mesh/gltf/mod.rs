@@ -32,15 +32,22 @@ use material::Materials;
 use node::Nodes;
 use primitive::{Placing, Shop};
 
-/// Reads a glTF file named `name`, whose buffers and images are inside it, in data URIs or beside it.
+/// Reads a glTF file named `name`, whose buffers and images are inside it, in data URIs or beside it. Where no materials are
+/// needed, nothing of them is read: no images, no colours of vertices.
 ///
 /// # Errors
 /// The place in the file, what is wrong there, and what to do about it.
-pub(super) fn read(content: &[u8], files: &Files, name: &str) -> Result<Mesh, Problem> {
+pub(super) fn read(
+    content: &[u8],
+    files: &Files,
+    name: &str,
+    needs_materials: bool,
+) -> Result<Mesh, Problem> {
     let mut left_out = LeftOut::default();
     let document = Document::new(content, files, name, &mut left_out)?;
     let nodes = Nodes::new(&document)?;
-    let mut shop = Shop { document: &document, materials: Materials::new(&document), left_out };
+    let materials = needs_materials.then(|| Materials::new(&document));
+    let mut shop = Shop { document: &document, materials, left_out };
     let mut mesh = Mesh::default();
     let mut skins = HashMap::new();
     for &index in &nodes.drawn {
@@ -78,7 +85,7 @@ pub(super) fn read(content: &[u8], files: &Files, name: &str) -> Result<Mesh, Pr
             }
         }
     }
-    mesh.materials = shop.materials.made;
+    mesh.materials = shop.materials.map(|materials| materials.made).unwrap_or_default();
     mesh.left_out = shop.left_out.words();
     Ok(mesh)
 }
