@@ -5,6 +5,13 @@ use glow::HasContext as _;
 /// What a context says of itself.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    expect(
+        clippy::unsafe_derive_deserialize,
+        reason = "plain data: what is unsafe asks a context, and guards nothing"
+    )
+)]
 pub struct DeviceInfo {
     /// GL_RENDERER.
     pub renderer: String,

@@ -27,17 +27,15 @@ const ASKED: usize = 4096;
 /// The corners of a box that leaves out at most a hundredth of the photons on each of its sides: a few that land far away would make all
 /// cells coarse.
 fn around_most(photons: &[PhotonPoint]) -> (Vec3, Vec3) {
-    let mut corners = [Vec3::ZERO; 2];
-    for axis in 0..3 {
-        let step = photons.len().div_ceil(ASKED).max(1);
+    let step = photons.len().div_ceil(ASKED).max(1);
+    let ends = |axis: usize| {
         let mut at: Vec<f32> = photons.iter().step_by(step).map(|photon| photon.position[axis]).collect();
         at.sort_unstable_by(f32::total_cmp);
         let beyond = at.len() / 100;
-        if let (Some(&low), Some(&high)) = (at.get(beyond), at.iter().rev().nth(beyond)) {
-            (corners[0][axis], corners[1][axis]) = (low, high);
-        }
-    }
-    (corners[0], corners[1])
+        [at.get(beyond), at.iter().rev().nth(beyond)].map(|end| end.copied().unwrap_or_default())
+    };
+    let [x, y, z] = [ends(0), ends(1), ends(2)];
+    (Vec3::new(x[0], y[0], z[0]), Vec3::new(x[1], y[1], z[1]))
 }
 
 /// Photons in the order of their cells.

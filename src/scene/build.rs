@@ -274,18 +274,26 @@ impl Builder<'_> {
             for position in &mut part.positions {
                 *position = *position * scale + translate;
             }
+            // Colours of vertices belong to the file's materials.
+            if material.is_some() {
+                part.colours.clear();
+            }
         }
+        let first = index(self.materials.len());
+        let added = mesh::add(&mesh, &mut self.geometry, entry.smooth, surface, |part| {
+            material.or(part.map(|own| first + own)).unwrap_or_else(|| unreachable!("checked above"))
+        });
+        let dropped = added.map_err(refuse)?;
+        if dropped > 0 {
+            mesh.left_out.push(format!("{dropped} triangles without area"));
+        }
+        mesh::tell(file, &mesh.left_out);
         for mut light in std::mem::take(&mut mesh.lights) {
             if let LightShape::Point { position, .. } = &mut light.shape {
                 *position = *position * scale + translate;
             }
             self.mesh_lights.push(light);
         }
-        let first = index(self.materials.len());
-        let added = mesh::add(&mesh, &mut self.geometry, entry.smooth, surface, |part| {
-            material.or(part.map(|own| first + own)).unwrap_or_else(|| unreachable!("checked above"))
-        });
-        added.map_err(refuse)?;
         if material.is_none() {
             self.materials.append(&mut mesh.materials);
         }

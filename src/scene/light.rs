@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use glam::{DVec2, DVec3, Vec3};
+use glam::{DVec2, DVec3, Vec2, Vec3};
 
 use super::texture::PlacedTexture;
 
@@ -144,7 +144,7 @@ impl AreaLight {
 impl PlacedTexture {
     /// Linear RGB on a triangle, at the shares of its second and third corner.
     pub(super) fn at(&self, triangle: usize, shares: DVec2) -> DVec3 {
-        let [corner, second, third] = self.coordinates[triangle].map(|place| place.as_dvec2());
+        let [corner, second, third] = self.coordinates[triangle].map(Vec2::as_dvec2);
         let place = corner + shares.x * (second - corner) + shares.y * (third - corner);
         self.texture.at(place).as_dvec3()
     }

@@ -3,7 +3,7 @@
 use serde_json::Value;
 
 use crate::Workplace;
-use crate::osmesa::osmesa_is_here;
+use crate::osmesa::{can_install, osmesa_is_here};
 
 const INSTALL: [&str; 3] =
     ["sudo apt-get install libegl1", "sudo dnf install mesa-libEGL", "sudo pacman -S mesa"];
@@ -268,4 +268,11 @@ fn zink_on_a_software_vulkan_is_exact() {
     let report: Value = serde_json::from_slice(&run.get_output().stdout).unwrap();
     has(report["device"]["renderer"].as_str().unwrap(), &["zink"]);
     assert_eq!(report["verify"]["wrong_pixels"], 0);
+}
+
+#[test]
+fn a_package_that_nobody_offers_is_told_from_one_that_is_here() {
+    assert!(!can_install("libnonesuch6"));
+    let has_apt = std::process::Command::new("apt-get").arg("--version").output().is_ok();
+    assert_eq!(can_install("libc6"), has_apt);
 }

@@ -7,7 +7,7 @@
 mod osmesa;
 
 use std::fs;
-use std::sync::{Barrier, Mutex, PoisonError};
+use std::sync::{Barrier, Mutex, MutexGuard, PoisonError};
 use std::thread;
 
 use glam::UVec2;
@@ -16,8 +16,11 @@ use varikernel::context::{self, DeviceChoice};
 use varikernel::settings::{Edges, Method, Order, Search, Settings};
 use varikernel::{CountBounds, DensityMap, Gl, Image, RadiusPipeline, reference};
 
-/// Held by the test that runs.
-static ALONE: Mutex<()> = Mutex::new(());
+/// Waits until no other test runs, for as long as what it gives is held.
+fn alone() -> MutexGuard<'static, ()> {
+    static ALONE: Mutex<()> = Mutex::new(());
+    ALONE.lock().unwrap_or_else(PoisonError::into_inner)
+}
 
 fn open(choice: &DeviceChoice) -> Gl {
     context::open(choice).unwrap_or_else(|error| panic!("{error}"))
@@ -43,7 +46,6 @@ fn held() -> Option<(u64, usize)> {
 }
 
 fn a_thousand_one_after_another(choice: &DeviceChoice) {
-    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
     let mut before = None;
     for number in 0..1000 {
         // What is made once, caches above all, is there after some.
@@ -62,7 +64,6 @@ fn a_thousand_one_after_another(choice: &DeviceChoice) {
 
 /// Each computes while the seven others do.
 fn eight_at_once(choice: &DeviceChoice) {
-    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
     let barrier = Barrier::new(8);
     thread::scope(|scope| {
         let threads: Vec<_> = (0..8)
@@ -87,11 +88,13 @@ fn eight_at_once(choice: &DeviceChoice) {
 
 #[test]
 fn a_thousand_contexts_one_after_another_on_egl() {
+    let _alone = alone();
     a_thousand_one_after_another(&DeviceChoice::Egl(None));
 }
 
 #[test]
 fn a_thousand_contexts_one_after_another_on_osmesa() {
+    let _alone = alone();
     if osmesa_is_here() {
         a_thousand_one_after_another(&DeviceChoice::OsMesa);
     }
@@ -99,11 +102,13 @@ fn a_thousand_contexts_one_after_another_on_osmesa() {
 
 #[test]
 fn eight_contexts_at_once_on_egl() {
+    let _alone = alone();
     eight_at_once(&DeviceChoice::Egl(None));
 }
 
 #[test]
 fn eight_contexts_at_once_on_osmesa() {
+    let _alone = alone();
     if osmesa_is_here() {
         eight_at_once(&DeviceChoice::OsMesa);
     }
@@ -111,7 +116,7 @@ fn eight_contexts_at_once_on_osmesa() {
 
 #[test]
 fn memory_and_open_files_are_told() {
-    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+    let _alone = alone();
     let Some((memory, files)) = held() else { return };
     let more = vec![1_u8; 200 << 20];
     let file = fs::File::open("/proc/self/status").unwrap();

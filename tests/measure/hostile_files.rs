@@ -89,24 +89,6 @@ fn results_of_a_bench() {
 }
 
 #[test]
-fn results_of_a_study() {
-    for study in spoilt("study/study.json", 16, Study::load) {
-        assert!(study.html("varikernel study").contains("</html>"));
-        let folder = TempDir::new().unwrap();
-        study.save(&folder.path().join("study.json")).unwrap();
-        study.save_csv(&folder.path().join("study.csv")).unwrap();
-    }
-}
-
-#[test]
-fn results_of_a_reproduction() {
-    let folder = TempDir::new().unwrap();
-    for run in spoilt("reproduction/run.json", 8, RunFile::load) {
-        run.save(&folder.path().join("run.json")).unwrap();
-    }
-}
-
-#[test]
 fn files_cut_or_of_another_kind() {
     let folder = TempDir::new().unwrap();
     let path = folder.path().join("a.json");

@@ -40,7 +40,7 @@ fn a_surface_may_shine_and_reflect() {
     let mtl = b"newmtl red\nKd 0.6 0.1 0.1\nKe 0.02 0.02 0.02\n";
     let scene = with_mesh(OWN, &[("a.obj", SQUARE), ("a.mtl", mtl)]).unwrap();
     let light = scene.lights().iter().find(|light| light.name == "thing").unwrap();
-    assert!(matches!(light.shape, LightShape::Area { radiance, .. } if radiance == Vec3::splat(0.02)));
+    assert!(matches!(&light.shape, LightShape::Area(area) if area.radiance() == Vec3::splat(0.02)));
     let material = red("Kd 0.6 0.1 0.1\nKe 0.02 0.02 0.02");
     assert_eq!(material.scattering, Scattering::Lambert(Vec3::new(0.6, 0.1, 0.1)));
 }

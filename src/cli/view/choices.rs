@@ -198,9 +198,10 @@ mod tests {
         let path = folder.path().join("view.json");
         choices().save(&path, String::new()).expect("saved");
         let text = fs::read_to_string(&path).expect("read");
-        fs::write(&path, text.replace("\"exposure\": null", "\"exposure\": 1e39")).expect("written");
-        let error = Choices::load(&path).expect_err("infinite in f32");
-        assert!(format!("{error:#}").contains("choices.exposure"), "{error:#}");
+        fs::write(&path, text.replace("\"photons_per_frame\": 1000", "\"photons_per_frame\": 0"))
+            .expect("written");
+        let error = Choices::load(&path).expect_err("no photons");
+        assert!(format!("{error:#}").contains("choices.photons_per_frame = 0"), "{error:#}");
     }
 
     #[test]

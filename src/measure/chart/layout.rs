@@ -26,10 +26,14 @@ pub(super) struct Layout {
     zero: Option<f64>,
 }
 
+/// Values beyond, which only a spoilt file of results holds, stand at the end of an axis; so do those below one part of it,
+/// so that no axis goes on for ever.
+const LARGEST: f64 = 1e100;
+
 impl Layout {
     /// An axis for `values` that goes past them by a factor of `margin`.
     pub(super) fn of(scale: &Scale, values: impl Iterator<Item = f64>, margin: f64) -> Self {
-        let values: Vec<f64> = values.collect();
+        let values: Vec<f64> = values.map(|value| value.clamp(-LARGEST, LARGEST)).collect();
         let most = values.iter().copied().fold(0.0, f64::max);
         if *scale == Scale::Linear {
             let least = values.iter().copied().fold(0.0, f64::min);
@@ -41,6 +45,7 @@ impl Layout {
         }
         let least = values.iter().copied().filter(|value| *value > 0.0).fold(f64::INFINITY, f64::min);
         let (least, most) = if least.is_finite() { (least, most) } else { (1.0, 1.0) };
+        let (least, most) = (least.max(1.0 / LARGEST), most.max(1.0 / LARGEST));
         let mut range = least / margin..most * margin;
         let zero = values.contains(&0.0).then(|| {
             // A twelfth of the axis below all others.
@@ -83,7 +88,7 @@ impl Ranged for Layout {
         } else {
             (value - start) / (end - start)
         };
-        low + (f64::from(high - low) * share).round() as i32
+        (f64::from(low) + f64::from(high - low) * share).round() as i32
     }
 
     fn key_points<Hint: KeyPointHint>(&self, hint: Hint) -> Vec<f64> {
@@ -122,6 +127,20 @@ fn number(value: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn values_that_nobody_measured_have_an_axis_with_an_end() {
+        let values = [5e-324, 1e308, -1e308, 0.0, 1.0];
+        for scale in [Scale::Linear, Scale::Logarithmic] {
+            let layout = Layout::of(&scale, values.into_iter(), 1.5);
+            assert!(layout.range.start.is_finite() && layout.range.end.is_finite(), "{layout:?}");
+            assert!(layout.labels.len() < 1000, "{} labels", layout.labels.len());
+            for value in values {
+                let place = layout.map(&layout.shown(value), (0, 500));
+                assert!((-500_000..500_000).contains(&place), "{value} is at {place}");
+            }
+        }
+    }
 
     #[test]
     fn labels_are_round() {

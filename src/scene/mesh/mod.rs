@@ -56,11 +56,12 @@ pub(super) fn load(files: &Files, name: &str, needs_materials: bool) -> Result<M
     for part in &mesh.parts {
         check(part)?;
     }
-    if !mesh.left_out.is_empty() {
-        tracing::warn!("{name}: left out: {}", mesh.left_out.join("; "));
-    }
-    if mesh.parts.iter().all(|part| part.triangles.is_empty()) {
-        return Err(("the mesh has no triangle".to_owned(), "export the mesh with its faces"));
+    if mesh.lights.is_empty() && mesh.parts.iter().all(|part| part.triangles.is_empty()) {
+        let left_out = match mesh.left_out.join("; ") {
+            nothing if nothing.is_empty() => nothing,
+            some => format!("; left out: {some}"),
+        };
+        return Err((format!("the mesh has no triangle{left_out}"), "export the mesh with its faces"));
     }
     Ok(mesh)
 }
@@ -84,7 +85,14 @@ fn check(part: &Part) -> Result<(), Problem> {
     Ok(())
 }
 
-/// Adds a mesh to the geometry as one surface, without the triangles that have no area.
+/// Says in one line what a mesh file holds and the picture will lack.
+pub(super) fn tell(name: &str, left_out: &[String]) {
+    if !left_out.is_empty() {
+        tracing::warn!("{name}: left out: {}", left_out.join("; "));
+    }
+}
+
+/// Adds a mesh to the geometry as one surface, without the triangles that have no area, whose number it gives.
 ///
 /// # Errors
 /// If no triangle is left, or a coordinate is too large after scaling.
@@ -94,7 +102,7 @@ pub(super) fn add(
     smooth: bool,
     surface: u32,
     material: impl Fn(Option<u32>) -> u32,
-) -> Result<(), Problem> {
+) -> Result<usize, Problem> {
     let mut dropped = 0;
     let mut whole = Vec::with_capacity(mesh.parts.len());
     for part in &mesh.parts {
@@ -134,17 +142,10 @@ pub(super) fn add(
             smooth: true,
         }));
     }
-    if added == 0 {
+    if added == 0 && mesh.lights.is_empty() {
         return Err(("no triangle of the mesh has an area".to_owned(), "export the mesh again"));
     }
-    if dropped > 0 {
-        tracing::warn!(
-            surface = geometry.surfaces[surface as usize],
-            dropped,
-            "triangles without area are left out"
-        );
-    }
-    Ok(())
+    Ok(dropped)
 }
 
 impl Part {

@@ -14,9 +14,6 @@ const LEAST_SINE: f32 = 1e-3;
 impl Choices {
     /// Refuses what neither a scene nor a map would refuse by itself, with the field's name.
     pub(super) fn check(&self) -> Result<()> {
-        if let Some(exposure) = self.exposure.filter(|exposure| !exposure.is_finite()) {
-            bail!("choices.exposure = {exposure} is not possible: give a number of stops");
-        }
         if !(1..=MOST).contains(&self.photons_per_frame) {
             let photons = self.photons_per_frame;
             bail!("choices.photons_per_frame = {photons} is not possible: give 1 to {MOST}");
@@ -81,7 +78,6 @@ mod tests {
     #[test]
     fn numbers_out_of_range_are_refused() {
         choices().check().expect("good choices");
-        assert!(Choices { exposure: Some(f32::INFINITY), ..choices() }.check().is_err());
         for photons_per_frame in [0, MOST + 1] {
             assert!(Choices { photons_per_frame, ..choices() }.check().is_err());
         }
