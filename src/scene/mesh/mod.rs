@@ -48,7 +48,7 @@ pub(super) fn load(files: &Files, name: &str, needs_materials: bool) -> Result<M
     let extension = name.rsplit_once('.').map_or("", |(_, extension)| extension).to_ascii_lowercase();
     let mesh = match extension.as_str() {
         "obj" => obj::read(&files.read(name).map_err(unreadable)?, files, name, needs_materials)?,
-        "gltf" | "glb" => gltf::read(&files.read(name).map_err(unreadable)?, files, name)?,
+        "gltf" | "glb" => gltf::read(&files.read(name).map_err(unreadable)?, files, name, needs_materials)?,
         _ => {
             let problem = "the extension is not that of a known mesh format".to_owned();
             return Err((problem, "use a mesh that ends in .obj, .gltf or .glb"));

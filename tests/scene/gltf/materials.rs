@@ -4,7 +4,8 @@ use serde_json::{Value, json};
 use varikernel::glam::Vec3;
 use varikernel::scene::{Material, Scattering};
 
-use super::{Made, material};
+use super::{Made, material, vertices};
+use crate::{BARE, load_with};
 
 fn made_of(entry: Value) -> Material {
     let mut made = Made::square();
@@ -78,6 +79,21 @@ fn emission_is_factor_times_strength() {
         "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 6}}});
     assert_eq!(made_of(shining).emission, Vec3::new(6.0, 3.0, 0.0));
     assert_eq!(made_of(json!({"emissiveFactor": [1, 0.5, 0]})).emission, Vec3::new(1.0, 0.5, 0.0));
+}
+
+#[test]
+fn what_the_scene_replaces_is_not_read() {
+    let mut made = Made::square();
+    let colours = made.floats("VEC3", &[0.5; 12]);
+    made.primitive()["attributes"]["COLOR_0"] = json!(colours);
+    made.material(
+        json!({"pbrMetallicRoughness": {"baseColorFactor": [2, 0, 0, 1]}, "emissiveFactor": [9, 9, 9]}),
+    );
+    let text = format!("{BARE}\n[surfaces.thing]\nmaterial = \"white\"\nmesh = {{ file = \"a.gltf\" }}\n");
+    let scene = load_with(&text, &[("a.gltf", made.text().as_bytes())]).unwrap();
+    assert_eq!(material(&scene).scattering, Scattering::Lambert(Vec3::splat(0.5)));
+    assert_eq!(material(&scene).emission, Vec3::ZERO);
+    assert!(vertices(&scene).iter().all(|vertex| vertex.colour == Vec3::ONE));
 }
 
 #[test]

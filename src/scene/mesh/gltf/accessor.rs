@@ -1,7 +1,5 @@
 //! Numbers of a glTF file: packed, apart, sparse, or zeros that are not stored.
 
-use std::mem::size_of;
-
 use gltf_json::accessor::{ComponentType, GenericComponentType, IndexComponentType, Type};
 use gltf_json::validation::Checked;
 use gltf_json::{Accessor, Index};

@@ -25,29 +25,41 @@ pub(super) fn split(content: &[u8]) -> Result<(&[u8], Option<&[u8]>), Problem> {
     }
     // Bytes after the length that the header tells mean nothing.
     let content = content.get(..length).ok_or_else(|| cut("the file", length, content.len()))?;
-    let (first, json, mut rest) = chunk(content.get(HEADER..).unwrap_or_default())?;
-    if first != *b"JSON" {
+    let json = Chunk::first(content.get(HEADER..).unwrap_or_default())?;
+    if json.kind != b"JSON" {
         return Err(problem("GLB", "its first chunk is not JSON", REMEDY));
     }
     // Chunks of other kinds may stand before and after the bytes, and are passed over.
+    let mut rest = json.after;
     while rest.len() >= CHUNK_HEADER {
-        let (kind, bytes, after) = chunk(rest)?;
-        if kind == *b"BIN\0" {
-            return Ok((json, Some(bytes)));
+        let chunk = Chunk::first(rest)?;
+        if chunk.kind == b"BIN\0" {
+            return Ok((json.content, Some(chunk.content)));
         }
-        rest = after;
+        rest = chunk.after;
     }
-    Ok((json, None))
+    Ok((json.content, None))
 }
 
-/// Kind and content of the first chunk, and what comes after.
-fn chunk(bytes: &[u8]) -> Result<([u8; 4], &[u8], &[u8]), Problem> {
-    let (Some(length), Some(kind)) = (word(bytes, 0), bytes.get(4..CHUNK_HEADER)) else {
-        return Err(cut("the header of a chunk", CHUNK_HEADER, bytes.len()));
-    };
-    let rest = &bytes[CHUNK_HEADER..];
-    let (content, after) = rest.split_at_checked(length).ok_or_else(|| cut("a chunk", length, rest.len()))?;
-    Ok(([kind[0], kind[1], kind[2], kind[3]], content, after))
+/// A part of a GLB.
+struct Chunk<'a> {
+    kind: &'a [u8],
+    content: &'a [u8],
+    /// What comes behind it.
+    after: &'a [u8],
+}
+
+impl<'a> Chunk<'a> {
+    /// The one at the beginning of bytes.
+    fn first(bytes: &'a [u8]) -> Result<Self, Problem> {
+        let (Some(length), Some(kind)) = (word(bytes, 0), bytes.get(4..CHUNK_HEADER)) else {
+            return Err(cut("the header of a chunk", CHUNK_HEADER, bytes.len()));
+        };
+        let rest = &bytes[CHUNK_HEADER..];
+        let (content, after) =
+            rest.split_at_checked(length).ok_or_else(|| cut("a chunk", length, rest.len()))?;
+        Ok(Self { kind, content, after })
+    }
 }
 
 /// Four bytes as a number.

@@ -33,6 +33,7 @@ pub(super) fn places(document: &Document<'_>, node: &Node, index: usize) -> Resu
     if counts.into_iter().flatten().any(|other| other != count) {
         return Err(problem(place("*"), "they have different counts", "export the mesh again"));
     }
+    document.spend((count * size_of::<DAffine3>()) as u64, place("*"))?;
     let one = |number: usize| {
         let rotation = rotations.as_ref().map(|all| unit(all[number].map(f64::from)));
         let rotation = rotation.unwrap_or(Some(DQuat::IDENTITY)).ok_or_else(|| {

@@ -65,7 +65,8 @@ pub(super) fn textures<'a>(
 
 fn of(entry: &Entry) -> [Option<&Info>; 2] {
     let base = entry.pbr_metallic_roughness.base_color_texture.as_ref().filter(|_| !is_solid(entry));
-    let emissive = entry.emissive_texture.as_ref().filter(|_| entry.emissive_factor.0 != [0.0; 3]);
+    let emissive =
+        entry.emissive_texture.as_ref().filter(|_| Vec3::from(entry.emissive_factor.0) != Vec3::ZERO);
     [base, emissive]
 }
 

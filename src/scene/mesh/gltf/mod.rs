@@ -20,6 +20,7 @@ mod texture;
 mod uri;
 
 use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 use std::fmt::Display;
 
 use super::{Mesh, Part, Problem};
@@ -31,15 +32,22 @@ use material::Materials;
 use node::Nodes;
 use primitive::{Placing, Shop};
 
-/// Reads a glTF file named `name`, whose buffers and images are inside it, in data URIs or beside it.
+/// Reads a glTF file named `name`, whose buffers and images are inside it, in data URIs or beside it. Where no materials are
+/// needed, nothing of them is read: no images, no colours of vertices.
 ///
 /// # Errors
 /// The place in the file, what is wrong there, and what to do about it.
-pub(super) fn read(content: &[u8], files: &Files, name: &str) -> Result<Mesh, Problem> {
+pub(super) fn read(
+    content: &[u8],
+    files: &Files,
+    name: &str,
+    needs_materials: bool,
+) -> Result<Mesh, Problem> {
     let mut left_out = LeftOut::default();
     let document = Document::new(content, files, name, &mut left_out)?;
     let nodes = Nodes::new(&document)?;
-    let mut shop = Shop { document: &document, materials: Materials::new(&document), left_out };
+    let materials = needs_materials.then(|| Materials::new(&document));
+    let mut shop = Shop { document: &document, materials, left_out };
     let mut mesh = Mesh::default();
     let mut skins = HashMap::new();
     for &index in &nodes.drawn {
@@ -51,12 +59,13 @@ pub(super) fn read(content: &[u8], files: &Files, name: &str) -> Result<Mesh, Pr
         };
         let place = format!("nodes[{index}]");
         let entry = document.find(own, "mesh", format!("{place}.mesh"))?;
-        if let Some(skin) = node.skin
-            && !skins.contains_key(&skin.value())
-        {
-            skins.insert(skin.value(), skin::joints(&document, &nodes, skin, &format!("{place}.skin"))?);
-        }
-        let joints = node.skin.and_then(|skin| skins.get(&skin.value()));
+        let joints = match node.skin.map(|skin| (skin, skins.entry(skin.value()))) {
+            Some((_, Entry::Occupied(known))) => Some(&*known.into_mut()),
+            Some((skin, Entry::Vacant(new))) => {
+                Some(&*new.insert(skin::joints(&document, &nodes, skin, &format!("{place}.skin"))?))
+            }
+            None => None,
+        };
         let places = match joints {
             // The joints alone say where a skinned mesh is.
             Some(_) => vec![DAffine3::IDENTITY],
@@ -76,7 +85,7 @@ pub(super) fn read(content: &[u8], files: &Files, name: &str) -> Result<Mesh, Pr
             }
         }
     }
-    mesh.materials = shop.materials.made;
+    mesh.materials = shop.materials.map(|materials| materials.made).unwrap_or_default();
     mesh.left_out = shop.left_out.words();
     Ok(mesh)
 }

@@ -50,7 +50,9 @@ impl Nodes {
             next += 1;
         }
         let mut placed = vec![false; nodes.len()];
-        order.iter().for_each(|&index| placed[index] = true);
+        for &index in &order {
+            placed[index] = true;
+        }
         if let Some(ring) = placed.iter().position(|placed| !placed) {
             return Err(problem(
                 format!("nodes[{ring}]"),

@@ -1,6 +1,6 @@
 //! One primitive of a mesh: its faces where its node or its skin puts them.
 
-use glam::{DAffine3, Vec3};
+use glam::DAffine3;
 use gltf_json::mesh::{Mode, Primitive};
 use gltf_json::validation::Checked;
 
@@ -34,7 +34,8 @@ pub(super) enum Placing<'a> {
 /// What primitives are read with, and where what they bring goes.
 pub(super) struct Shop<'a> {
     pub(super) document: &'a Document<'a>,
-    pub(super) materials: Materials<'a>,
+    /// None where nobody needs them.
+    pub(super) materials: Option<Materials<'a>>,
     pub(super) left_out: LeftOut,
 }
 
@@ -64,22 +65,20 @@ impl Shop<'_> {
         let vertices = positions.len();
         let normals = attributes.normals(vertices, weights)?;
         let triangles = attributes.triangles(faces, vertices)?;
-        let textures = material::textures(document, primitive.material, place)?;
-        let mut coordinates = [None, None];
-        for (coordinates, info) in coordinates.iter_mut().zip(textures) {
-            if let Some(info) = info {
-                *coordinates = attributes.coordinates(info, vertices)?;
+        let mut part = Part { positions, normals, triangles, ..Part::default() };
+        if let Some(materials) = &mut self.materials {
+            let textures = material::textures(document, primitive.material, place)?;
+            let mut coordinates = [None, None];
+            for (coordinates, info) in coordinates.iter_mut().zip(textures) {
+                if let Some(info) = info {
+                    *coordinates = attributes.coordinates(info, vertices)?;
+                }
             }
+            let placed = [0, 1].map(|kind: usize| coordinates[kind].is_some());
+            part.material = Some(materials.index(primitive.material, placed, &mut self.left_out)?);
+            part.coordinates = coordinates.map(Option::unwrap_or_default);
+            part.colours = attributes.colours(vertices, &mut self.left_out)?;
         }
-        let placed = [0, 1].map(|kind: usize| coordinates[kind].is_some());
-        let mut part = Part {
-            positions,
-            normals,
-            colours: attributes.colours(vertices, &mut self.left_out)?,
-            coordinates: coordinates.map(Option::unwrap_or_default),
-            triangles,
-            material: Some(self.materials.index(primitive.material, placed, &mut self.left_out)?),
-        };
         match placing {
             Placing::Node(to_world) => put(&mut part, |_| to_world),
             Placing::Skin(joints) => {
@@ -126,6 +125,6 @@ fn put(part: &mut Part, to_world: impl Fn(usize) -> DAffine3) {
     }
     for (vertex, normal) in part.normals.iter_mut().enumerate() {
         let turned = normal_matrix(to_world(vertex).matrix3) * normal.as_dvec3();
-        *normal = turned.try_normalize().map_or(Vec3::ZERO, |normal| normal.as_vec3());
+        *normal = turned.try_normalize().unwrap_or_default().as_vec3();
     }
 }

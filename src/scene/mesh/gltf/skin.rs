@@ -48,8 +48,13 @@ pub(super) fn joints(
 
 /// How much each joint moves each vertex of a primitive.
 pub(super) struct Weights {
-    /// Sets of four joints with their weights, a vertex.
-    sets: Vec<(Vec<[u32; 4]>, Vec<[f32; 4]>)>,
+    sets: Vec<Set>,
+}
+
+/// Four joints a vertex, and how much each of them counts.
+struct Set {
+    joints: Vec<[u32; 4]>,
+    weights: Vec<[f32; 4]>,
 }
 
 impl Weights {
@@ -85,7 +90,7 @@ impl Weights {
                 let reason = format!("joint {joint} is named, and the skin has {joints}");
                 return Err(problem(place("JOINTS"), reason, REMEDY));
             }
-            sets.push((numbers, weights));
+            sets.push(Set { joints: numbers, weights });
         }
         Ok((!sets.is_empty()).then_some(Self { sets }))
     }
@@ -94,9 +99,9 @@ impl Weights {
     pub(super) fn at(&self, vertex: usize, joints: &[DAffine3]) -> DAffine3 {
         let mut sum = DMat4::ZERO;
         let mut total = 0.0;
-        for (numbers, weights) in &self.sets {
+        for set in &self.sets {
             for (&joint, &weight) in
-                numbers[vertex].iter().zip(&weights[vertex]).filter(|(_, weight)| **weight != 0.0)
+                set.joints[vertex].iter().zip(&set.weights[vertex]).filter(|(_, weight)| **weight != 0.0)
             {
                 sum += DMat4::from(joints[joint as usize]) * f64::from(weight);
                 total += f64::from(weight);
