@@ -1,7 +1,7 @@
 //! MTL files: colours by hand, and what is wrong in one that is used.
 
-use varikernel::glam::Vec3;
-use varikernel::scene::{LightShape, Material, Scattering};
+use varikernel::glam::{DVec3, Vec3};
+use varikernel::scene::{LightShape, Material, Ray, Scattering, Scene};
 
 use crate::meshes::{refuses, with_mesh};
 
@@ -23,7 +23,7 @@ fn fields_mean_what_the_format_says() {
         ("Kd 0.6 0.1 0.1\nd -halo 0.5", lambert(0.6, 0.1, 0.1)),
         ("Kd 0.6 0.1 0.1\nd 0.0\nillum 2", lambert(0.6, 0.1, 0.1)),
         ("Kd 0.6 0.1 0.1\nillum 2.0", lambert(0.6, 0.1, 0.1)),
-        ("Kd 0 0 0\nmap_Kd t.png", lambert(0.0, 0.0, 0.0)),
+        ("Kd 0 0 0\nmap_Kd none.png", lambert(0.0, 0.0, 0.0)),
         ("Kd 0.1 \\\n 0.2 0.3", lambert(0.1, 0.2, 0.3)),
         ("Ns 10", lambert(0.8, 0.8, 0.8)),
         ("illum 3", Scattering::Mirror(Vec3::ONE)),
@@ -65,4 +65,60 @@ fn a_used_material_that_is_wrong_is_told_by_file_line_and_field() {
 fn wrong_materials_that_nobody_uses_do_no_harm() {
     let mtl = b"Kd 7\nnewmtl other\nKd\nillum 99\nnewmtl red\nKd 0.6 0.1 0.1\nnewmtl\nKd x\n";
     with_mesh(OWN, &[("a.obj", SQUARE), ("a.mtl", mtl)]).unwrap();
+}
+
+/// Red on the left and blue on the right, each of one texel.
+fn red_and_blue() -> Vec<u8> {
+    let image = image::RgbImage::from_fn(2, 1, |x, _| image::Rgb([[255, 0, 0], [0, 0, 255]][x as usize]));
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    image.write_to(&mut bytes, image::ImageFormat::Png).unwrap();
+    bytes.into_inner()
+}
+
+/// What the square reflects at a place of its own, from -1 to 1.
+fn reflectance_at(scene: &Scene, x: f64) -> Vec3 {
+    let ray = Ray { origin: DVec3::new(x, 0.5, 3.0), direction: -DVec3::Z };
+    match scene.scattering(&scene.cast(&ray).unwrap()) {
+        Scattering::Lambert(reflectance) => reflectance,
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn images_of_reflectance_and_emission_are_hung_on_faces_that_have_places_for_them() {
+    let placed =
+        b"mtllib a.mtl\nv -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl red\n\
+                   f 1/1 2/2 3/3 4/4\n";
+    let load = |obj: &[u8], lines: &str| {
+        let mtl = format!("newmtl red\n{lines}\n");
+        with_mesh(OWN, &[("a.obj", obj), ("a.mtl", mtl.as_bytes()), ("t.png", &red_and_blue())]).unwrap()
+    };
+    // Kd times the image; a black Kd and none leave the image as it is.
+    for (lines, share) in [
+        ("Kd 0.5 0.5 0.5\nmap_Kd -clamp on t.png", 0.5),
+        ("Kd 0 0 0\nmap_Kd -clamp on ./t.png", 1.0),
+        ("map_Kd -clamp on t.png", 1.0),
+    ] {
+        let scene = load(placed, lines);
+        // A quarter of the way from each side is the middle of a texel, and beyond it a clamped image goes on.
+        for (x, colour) in [(-0.5, Vec3::X), (-0.9, Vec3::X), (0.5, Vec3::Z), (0.0, Vec3::new(0.5, 0.0, 0.5))]
+        {
+            let found = reflectance_at(&scene, x);
+            assert!(found.abs_diff_eq(share * colour, 1e-5), "{lines}, {x}: {found}");
+        }
+    }
+    // An emission image shines, by half of its texels in each colour.
+    let shining = load(placed, "Kd 0 0 0\nKe 4 4 4\nmap_Ke t.png");
+    let light = shining.lights().iter().find(|light| light.name == "thing").unwrap();
+    let by_hand = 4.0 * std::f64::consts::PI * 4.0 * 0.5;
+    assert!(
+        (light.flux() / by_hand - DVec3::new(1.0, 0.0, 1.0)).abs().max_element() < 0.02,
+        "{}",
+        light.flux()
+    );
+    // Faces without places, and files that are not there.
+    assert_eq!(reflectance_at(&load(SQUARE, "Kd 0.5 0.5 0.5\nmap_Kd t.png"), -0.5), Vec3::splat(0.5));
+    assert_eq!(reflectance_at(&load(placed, "map_Kd none.png"), -0.5), Vec3::splat(0.8));
+    let dark = load(placed, "Kd 0.5\nKe 4 4 4\nmap_Ke none.png");
+    assert!(dark.lights().iter().all(|light| light.name != "thing"));
 }

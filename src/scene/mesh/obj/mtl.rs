@@ -11,15 +11,13 @@ use crate::scene::mesh::Problem;
 use crate::scene::{Material, Scattering};
 
 /// `Kd` and `Ks` of a material that has none, as in the format's oldest descriptions and in Blender.
-const DEFAULT_DIFFUSE: f32 = 0.8;
+pub(super) const DEFAULT_DIFFUSE: f32 = 0.8;
 const DEFAULT_SPECULAR: f32 = 1.0;
 /// Index of refraction of glass that has no `Ni`.
 const DEFAULT_INDEX: f32 = 1.5;
 /// Statements that name an image which is not read.
-const OTHER_TEXTURES: [&str; 11] = [
-    "map_d", "map_Ks", "map_Bump", "bump", "norm", "disp", "decal", "refl", "map_Ns",
-    "map_Pr", "map_Pm",
-];
+const OTHER_TEXTURES: [&str; 11] =
+    ["map_d", "map_Ks", "map_Bump", "bump", "norm", "disp", "decal", "refl", "map_Ns", "map_Pr", "map_Pm"];
 
 /// A material as its file has it.
 pub(super) struct Entry<'a> {
@@ -59,7 +57,7 @@ impl Entry<'_> {
                 return colour(line, 1.0);
             }
             // An image is all of the colour then.
-            if field == "Kd" && self.last("map_Kd").is_some() {
+            if field == "Kd" && self.has("map_Kd") {
                 return Ok(Vec3::ONE);
             }
             notes.push(format!("no {field}, {default} is taken"));
@@ -73,7 +71,7 @@ impl Entry<'_> {
         } else {
             Scattering::Lambert(reflectance("Kd", DEFAULT_DIFFUSE)?)
         };
-        let without = if self.last("map_Ke").is_some() { Vec3::ONE } else { Vec3::ZERO };
+        let without = if self.has("map_Ke") { Vec3::ONE } else { Vec3::ZERO };
         let emission = self.last("Ke").map_or(Ok(without), |line| colour(line, f32::MAX))?;
         if matches!(scattering, Scattering::Dielectric { .. }) {
             if self.last("Tf").is_some_and(|line| colour_of(line).is_none_or(|filter| filter != Vec3::ONE)) {
@@ -94,6 +92,11 @@ impl Entry<'_> {
     fn other_textures(&self) -> Vec<String> {
         let named = OTHER_TEXTURES.iter().filter_map(|field| Some((field, self.last(field)?)));
         named.map(|(field, line)| format!("texture \"{}\" ({field})", shown(&image(line).name))).collect()
+    }
+
+    /// Whether the material has a field.
+    pub(super) fn has(&self, field: &str) -> bool {
+        self.last(field).is_some()
     }
 
     /// The image of `map_Kd` or `map_Ke`.
@@ -272,10 +275,25 @@ mod tests {
             ("Kd 1\nTr 1", vec!["transparency (Tr)"]),
             ("Kd 1\nd -halo 0.5", vec!["transparency (d)"]),
             ("illum 4\nTf 1 0 0\nd 0", vec!["colour of the glass (Tf)"]),
-            ("Kd 1\nmap_kd -s 2 2 -o 1 1 1 -clamp on my bark.png", vec!["texture \"my bark.png\" (map_Kd)"]),
-            ("Kd 1\nmap_Ke -mm 0 1 \\\n.\\lamp.png # on", vec!["texture \".\\lamp.png\" (map_Ke)"]),
+            ("Kd 1\nbump -bm 2 my bark.png", vec!["texture \"my bark.png\" (bump)"]),
+            ("map_Kd bark.png\nd 0.5", vec!["transparency (d)"]),
         ] {
             assert_eq!(only(text).unwrap().1, expected, "{text}");
+        }
+    }
+
+    #[test]
+    fn the_name_of_an_image_comes_after_its_options() {
+        for (text, name, clamped, options) in [
+            ("map_kd -s 2 2 -o 1 1 1 -clamp on my bark.png", "my bark.png", true, vec!["-s", "-o"]),
+            ("map_Kd -mm 0 1 \\\n.\\lamp.png # on", ".\\lamp.png", false, vec!["-mm"]),
+            ("map_Kd -clamp off -blendu on a.png", "a.png", false, vec![]),
+            ("map_Kd -s", "", false, vec!["-s"]),
+        ] {
+            let text = format!("newmtl m\n{text}");
+            let image = entries(text.as_bytes()).remove(0).image("map_Kd").unwrap();
+            assert_eq!((image.name.as_str(), image.clamped), (name, clamped), "{text}");
+            assert_eq!(image.options, options, "{text}");
         }
     }
 }

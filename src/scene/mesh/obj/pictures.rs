@@ -6,7 +6,7 @@ use std::sync::Arc;
 use glam::Vec3;
 
 use super::lines::shown;
-use super::mtl::{Entry, ImageName};
+use super::mtl::{DEFAULT_DIFFUSE, Entry, ImageName};
 use crate::scene::mesh::image::Images;
 use crate::scene::mesh::{Mesh, Part};
 use crate::scene::source::{self, Files};
@@ -46,6 +46,13 @@ impl<'a> Pictures<'a> {
                 _ => Err("only diffuse materials have images".to_owned()),
             };
             material.reflectance_texture = told("map_Kd", &image, texture, notes);
+            if let (Scattering::Lambert(reflectance), None) =
+                (&mut material.scattering, &material.reflectance_texture)
+                && !entry.has("Kd")
+            {
+                notes.push(format!("no Kd, {DEFAULT_DIFFUSE} is taken"));
+                *reflectance = Vec3::splat(DEFAULT_DIFFUSE);
+            }
         }
         if let Some(image) = entry.image("map_Ke") {
             let texture = self.texture(path, &image);
@@ -103,7 +110,7 @@ pub(super) fn without_coordinates(mesh: &mut Mesh) {
             continue;
         }
         *material = Some(*copies.entry(number).or_insert_with(|| {
-            let mut copy = own.clone();
+            let mut copy = materials[number as usize].clone();
             left_out.push(format!("images of material \"{}\" on faces without vt", shown(&copy.name)));
             copy.reflectance_texture = None;
             if copy.emission_texture.take().is_some() {
