@@ -35,6 +35,7 @@ const WITHOUT_EFFECT: &[&str] = &[
     "EXT_instance_features",
     "EXT_mesh_features",
     "EXT_structural_metadata",
+    "FB_ngon_encoding",
     "KHR_animation_pointer",
     "KHR_xmp",
     "KHR_xmp_json_ld",
