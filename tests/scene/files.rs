@@ -140,7 +140,7 @@ fn what_is_wrong_is_told_by_line_and_field() {
     refuses(
         "lambert = [0.725, 0.71, 0.68]",
         "",
-        &["line 15, materials.white", "one of lambert, mirror and dielectric"],
+        &["line 15, materials.white", "one of lambert, mirror, dielectric and thin_dielectric"],
     );
     refuses("{ lambert", "{ dielectric = 1.5, lambert", &["line 15, materials.white", "not exactly one"]);
     refuses(
