@@ -88,7 +88,8 @@ impl Ranged for Layout {
         } else {
             (value - start) / (end - start)
         };
-        (f64::from(low) + f64::from(high - low) * share).round() as i32
+        // Far outside of the picture, where it is still a place that can be reckoned with.
+        (f64::from(low) + f64::from(high - low) * share.clamp(-100.0, 100.0)).round() as i32
     }
 
     fn key_points<Hint: KeyPointHint>(&self, hint: Hint) -> Vec<f64> {
