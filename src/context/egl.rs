@@ -29,17 +29,12 @@ pub(super) struct Device {
 pub(super) fn devices() -> Result<Vec<Device>, Refusal> {
     let devices = EglDevice::query_devices().map_err(|error| match error.error_kind() {
         glutin::error::ErrorKind::NotFound => Refusal::new("libEGL.so.1 can't be loaded", INSTALL),
-        _ => Refusal::new(error.to_string(), INSTALL),
+        _ => without_vendor(&error.to_string()),
     })?;
     let mut devices: Vec<_> =
         devices.enumerate().map(|(index, device)| (is_software(&device), index, device)).collect();
     if devices.is_empty() {
-        let symptom = "EGL lists no device";
-        let broken = vendor::refusals(&environment::get).into_iter().next();
-        return Err(match broken {
-            Some(refusal) => refusal.after(symptom),
-            None => Refusal::new(format!("{symptom}; is a driver installed?"), INSTALL),
-        });
+        return Err(without_vendor("EGL lists no device"));
     }
     devices.sort_by_key(|&(software, index, _)| (software, index));
     let device = |(_, index, handle): (bool, usize, EglDevice)| {
@@ -54,6 +49,14 @@ pub(super) fn devices() -> Result<Vec<Device>, Refusal> {
         Device { index, description, node: node.map(PathBuf::from), handle }
     };
     Ok(devices.into_iter().map(device).collect())
+}
+
+/// Why EGL is there and knows of no device: a vendor file that points nowhere, or no driver.
+fn without_vendor(symptom: &str) -> Refusal {
+    match vendor::refusals(&environment::get).into_iter().next() {
+        Some(broken) => broken.after(symptom),
+        None => Refusal::new(format!("{symptom}; is a driver installed?"), INSTALL),
+    }
 }
 
 fn is_software(device: &EglDevice) -> bool {

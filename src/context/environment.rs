@@ -28,6 +28,7 @@ const PREFIXES: [&str; 16] = [
 ];
 
 /// Variables that choose the driver.
+#[cfg(any(all(feature = "egl", not(target_vendor = "apple")), feature = "window"))]
 const DRIVER: [&str; 2] = ["GALLIUM_DRIVER", "MESA_LOADER_DRIVER_OVERRIDE"];
 
 /// Mesa's renderers on the processor.
@@ -57,6 +58,7 @@ fn is_of_drivers(name: &str) -> bool {
 }
 
 /// The variable that keeps Mesa from OpenGL 3.3, if one does.
+#[cfg(any(all(feature = "egl", not(target_vendor = "apple")), feature = "window"))]
 pub(super) fn obstacle(get: Get<'_>) -> Option<Refusal> {
     version_override(get).or_else(|| driver(get)).or_else(|| no_llvm(get))
 }
@@ -122,6 +124,7 @@ fn leading(text: &str) -> Option<u32> {
 }
 
 /// A driver that is asked for by name and is none of Mesa's software renderers.
+#[cfg(any(all(feature = "egl", not(target_vendor = "apple")), feature = "window"))]
 fn driver(get: Get<'_>) -> Option<Refusal> {
     let (name, value) = DRIVER.iter().find_map(|name| {
         let value = get(name)?;
@@ -154,7 +157,7 @@ fn no_llvm(get: Get<'_>) -> Option<Refusal> {
     })
 }
 
-#[cfg(test)]
+#[cfg(all(test, any(all(feature = "egl", not(target_vendor = "apple")), feature = "window")))]
 mod tests {
     use super::*;
 

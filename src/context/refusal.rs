@@ -24,6 +24,7 @@ impl Refusal {
     }
 
     /// With what was seen first, of which this is the cause.
+    #[cfg(any(all(feature = "egl", not(target_vendor = "apple")), feature = "window"))]
     pub(super) fn after(self, symptom: &str) -> Self {
         Self { reason: format!("{symptom}: {}", self.reason), ..self }
     }
@@ -49,7 +50,7 @@ impl From<Error> for Refusal {
     }
 }
 
-#[cfg(test)]
+#[cfg(all(test, any(all(feature = "egl", not(target_vendor = "apple")), feature = "window")))]
 mod tests {
     use super::*;
 

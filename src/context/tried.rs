@@ -57,7 +57,9 @@ impl<'a> Tried<'a> {
 
     /// All of it in one.
     pub(super) fn refusal(mut self) -> Refusal {
-        let is_unknown = !self.candidates.iter().any(|candidate| self.choice.covers(&candidate.choice));
+        let has = |choice: &DeviceChoice| self.candidates.iter().any(|one| choice.covers(&one.choice));
+        // Where a whole platform is missing, its own reason says more.
+        let is_unknown = !has(self.choice) && (self.answers.is_empty() || has(&DeviceChoice::Egl(None)));
         if is_unknown {
             self.answers.push("nothing: there is no such device".to_owned());
         }

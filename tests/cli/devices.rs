@@ -95,7 +95,9 @@ fn a_device_that_is_not_there_is_refused_with_those_that_are() {
         let words = refused(device);
         has(&words, &[&format!("--device {device}"), "help: choose a device that is here"]);
         let help = words.split_once("help: ").unwrap().1;
-        names().iter().for_each(|name| has(help, &[&format!("{name} (")]));
+        for name in names() {
+            has(help, &[&format!("{name} (")]);
+        }
         lacks(&words, &INSTALL);
         assert_eq!(words.contains("osmesa"), names().len() == 2 || device == "nosuchcard", "{words}");
     }
@@ -156,7 +158,7 @@ fn a_vendor_file_that_points_nowhere_is_named_and_not_mesa() {
             missing["platform"] == "egl" && missing["remedy"].as_str().unwrap().contains(variable),
             "{missing}"
         );
-        has(missing["error"].as_str().unwrap(), &["EGL lists no device", "libEGL_nonesuch.so.0"]);
+        has(missing["error"].as_str().unwrap(), &["10_x.json", "libEGL_nonesuch.so.0"]);
     }
     let [_, stderr] = with(
         &place,

@@ -29,7 +29,8 @@ pub(crate) fn osmesa_is_here() -> bool {
     let mut absent = ABSENT.lock().unwrap_or_else(PoisonError::into_inner);
     if absent.insert(name.clone()) {
         let count = absent.len();
-        writeln!(io::stderr(), "absent ({count}): {name} on OSMesa: libosmesa6 is not offered here").unwrap();
+        let line = format!("absent ({count}): {name} on OSMesa: libosmesa6 is not offered here\n");
+        io::stderr().write_all(line.as_bytes()).unwrap();
     }
     false
 }
