@@ -124,7 +124,13 @@ mod tests {
     #[test]
     fn a_save_that_fails_is_tried_again() {
         let mut autosave = Autosave::new(Duration::ZERO);
-        let full = || Err(Error::NoContext("the disk is full".to_owned()));
+        let full = || {
+            Err(Error::File {
+                path: "run.json".into(),
+                problem: "the disk is full".to_owned(),
+                remedy: "make room on it".to_owned(),
+            })
+        };
         autosave.save_if_due(full);
         assert!(autosave.is_failing);
         autosave.save_if_due(|| Ok(()));

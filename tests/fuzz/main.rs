@@ -4,6 +4,7 @@
 //! VARIKERNEL_FUZZ_SECONDS says for how long. A file at which a reader fails stays in the folder that the failure names.
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+#![expect(clippy::print_stdout, reason = "`.ci/fuzz` tells how far it came")]
 
 mod mutation;
 mod readers;
@@ -84,7 +85,7 @@ fn round(name: &str) {
         }
         done += 1;
     }
-    eprintln!("{name}: {done} files, {} seeds, {:.1} s", seeds.len(), begun.elapsed().as_secs_f64());
+    println!("{name}: {done} files, {} seeds, {:.1} s", seeds.len(), begun.elapsed().as_secs_f64());
     check_memory(name);
 }
 
@@ -124,6 +125,7 @@ rounds! {
     bench: "bench",
     reproduction: "reproduction",
     study: "study",
+    texture: "texture",
 }
 
 #[test]

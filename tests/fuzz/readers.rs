@@ -43,7 +43,7 @@ const MAPS: &str = "assets/maps";
 const SEEDS: &str = "tests/fuzz/seeds";
 
 /// Every reader.
-pub(crate) const READERS: [Reader; 12] = [
+pub(crate) const READERS: [Reader; 13] = [
     Reader { name: "exr", file: "a.exr", beside: &[], seeds: &[(SEEDS, "exr")], read: read_map },
     Reader { name: "npy", file: "a.npy", beside: &[], seeds: &[(SEEDS, "npy")], read: read_map },
     Reader {
@@ -102,7 +102,7 @@ pub(crate) const READERS: [Reader; 12] = [
         seeds: &[("tests/fuzz/seeds/bench", "json")],
         read: |path| {
             if let Ok(report) = Report::load(path) {
-                compare(&report, &report);
+                drop(compare(&report, &report));
                 drop(report.save_csv(&path.with_extension("csv")));
             }
         },
@@ -124,8 +124,16 @@ pub(crate) const READERS: [Reader; 12] = [
                 drop(study.check_resumable(path, &study));
                 drop(study.save(&path.with_extension("again")));
                 drop(study.save_csv(&path.with_extension("csv")));
+                drop(study.html("varikernel study"));
             }
         },
+    },
+    Reader {
+        name: "texture",
+        file: "t.png",
+        beside: &[("a.obj", OBJ), ("a.mtl", "newmtl red\nmap_Kd t.png\nmap_Ke t.png\n")],
+        seeds: &[(SEEDS, "png"), (SEEDS, "jpg")],
+        read: |path| read_mesh(&path.with_file_name("a.obj"), "obj"),
     },
 ];
 
