@@ -66,10 +66,11 @@ impl From<Error> for Failure {
             Error::ContextLost => Status::ContextLost,
             Error::Gl { .. } => Status::OpenGl,
             Error::NoContext { .. } => Status::NoContext,
-            // Nothing here reads files, lets a caller name uniforms or needs a query.
-            Error::File { .. } | Error::UnknownUniform { .. } | Error::QueryRunning { .. } => {
-                Status::Internal
-            }
+            // Nothing here reads files, has scenes with lights, lets a caller name uniforms or needs a query.
+            Error::File { .. }
+            | Error::NoLight
+            | Error::UnknownUniform { .. }
+            | Error::QueryRunning { .. } => Status::Internal,
         };
         Self::new(status, error.to_string())
     }

@@ -164,6 +164,10 @@ fn progress_bar(photons: u32) -> ProgressBar {
     bar.with_style(style.unwrap_or_else(|error| unreachable!("a fixed template: {error}")))
 }
 
+fn mean([red, green, blue]: [f64; 3]) -> f64 {
+    (red + green + blue) / 3.0
+}
+
 #[expect(clippy::cast_precision_loss, reason = "counts are below 2^53")]
 fn print(report: &Report<'_>) -> Result<()> {
     let photons = report.settings.photons;
@@ -179,6 +183,7 @@ fn print(report: &Report<'_>) -> Result<()> {
         ("left the scene", percent(ends.left)),
         ("absorbed", percent(ends.absorbed)),
         ("bounces used up", percent(ends.bounces_used)),
+        ("power cut off", format!("{:.3} %, mean of the colours", 100.0 * mean(report.stats.cut_off))),
     ];
     if ends.given_up > 0 {
         let often = photon::MAX_SPECULAR;

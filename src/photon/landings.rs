@@ -47,6 +47,8 @@ pub struct Landings {
     /// For k = 0, 1, 2, ...: the share of the emitted power that arrives at the k-th diffuse landing, before
     /// absorption, linear RGB; 0 for a colour that is not emitted.
     pub flux: Vec<[f64; 3]>,
+    /// The share of the emitted power that reflection would have sent on after the last landing that was asked for, linear RGB.
+    pub cut_off: [f64; 3],
 }
 
 impl Tally {
@@ -130,14 +132,14 @@ impl Tally {
             });
             shares.collect()
         };
-        let in_all = |bounce: usize| {
-            let flux = self.flux.get(bounce).copied().unwrap_or_default();
-            [share(flux.x, emitted.x), share(flux.y, emitted.y), share(flux.z, emitted.z)]
-        };
+        let of_emitted =
+            |flux: DVec3| [share(flux.x, emitted.x), share(flux.y, emitted.y), share(flux.z, emitted.z)];
+        let in_all = |bounce: usize| of_emitted(self.flux.get(bounce).copied().unwrap_or_default());
         Landings {
             emitted_flux_rgb: emitted.to_array(),
             landings: bounces.clone().map(on_surfaces).collect(),
             flux: bounces.map(in_all).collect(),
+            cut_off: of_emitted(self.cut_off),
         }
     }
 }

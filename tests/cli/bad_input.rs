@@ -241,8 +241,8 @@ fn meshes_say_what_is_wrong_with_them_and_what_is_left_out() {
     place.put("a.mtl", b"newmtl red\nKd 0.6\nmap_Kd bark.png\nd 0.5\n");
     let run = place.run("photons s.toml -o new.npy --photons 100").success();
     let stderr = String::from_utf8_lossy(&run.get_output().stderr).into_owned();
-    let told = "a.obj: left out: vertex colours (line 2); material \"red\" of a.mtl: texture \"bark.png\" (map_Kd), \
-                transparency (d)\n";
+    let told = "a.obj: left out: vertex colours (line 2); material \"red\" of a.mtl: transparency (d), \
+                texture \"bark.png\" (map_Kd): there is no such file\n";
     assert!(stderr.contains(told), "{stderr}");
     assert_eq!(stderr.matches("left out").count(), 1, "{stderr}");
 }

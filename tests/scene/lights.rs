@@ -192,9 +192,12 @@ spheres = [{ centre = [0, 0, 0], radius = 1 }]
 ";
     let scene = load(text).unwrap();
     for (bounces, left) in [(1, 0.9), (8, 0.430_467_21)] {
-        let (_, tally) = traced(&scene, &TraceSettings { bounces, ..settings(500) });
+        let settings = TraceSettings { bounces, ..settings(500) };
+        let (_, tally) = traced(&scene, &settings);
         let share = tally.power_cut_off() / (4.0 * PI * DVec3::new(1.0, 2.0, 3.0));
         assert!((share - left).abs().max_element() < 1e-5, "{share}");
+        let stats = tally.landings(&scene, &Emission::new(&scene, &settings).unwrap());
+        assert!((DVec3::from_array(stats.cut_off) - left).abs().max_element() < 1e-5, "{:?}", stats.cut_off);
     }
 }
 
