@@ -19,7 +19,7 @@ use mutation::Mutator;
 use readers::{READERS, Reader};
 
 /// Files for each reader without VARIKERNEL_FUZZ_SECONDS; fewer for the one that starts a process each time.
-const FILES: u32 = 150;
+const FILES: u32 = 1000;
 const FILES_OF_PROGRAM: u32 = 8;
 /// A file of a few kilobytes that takes longer than this has found a loop.
 const LONGEST: Duration = Duration::from_secs(20);
