@@ -13,7 +13,10 @@ fn statistics_are_shares_by_bounce_and_surface() {
     let stats: serde_json::Value = serde_json::from_slice(&place.bytes("stats.json")).unwrap();
     assert_eq!(report["stats"], stats);
     let keys: Vec<_> = stats.as_object().unwrap().keys().map(String::as_str).collect();
-    assert_eq!(keys, ["emitted_flux_rgb", "flux", "landings"]);
+    assert_eq!(keys, ["cut_off", "emitted_flux_rgb", "flux", "landings"]);
+    // What lands for the eighth time, and is not absorbed then.
+    let cut_off = stats["cut_off"][1].as_f64().unwrap();
+    assert!(cut_off > 0.0 && cut_off < stats["flux"][7][1].as_f64().unwrap(), "{cut_off}");
     // π · 130 · 105 · radiance.
     for (found, radiance) in stats["emitted_flux_rgb"].as_array().unwrap().iter().zip([17.0, 12.0, 4.0]) {
         let by_hand = std::f64::consts::PI * 130.0 * 105.0 * radiance;
