@@ -168,7 +168,7 @@ fn what_can_not_be_is_refused() {
             "pink.toml -o old.npy",
             ["pink.toml: line 44, surfaces.left.material", "there is no material \"pink\""],
         ),
-        ("dark.toml -o old.npy", ["no light of the scene shines", "photons"]),
+        ("dark.toml -o old.npy", ["no light of the scene shines", "[lights.lamp]"]),
         ("old.npy -o a.npy", ["old.npy: line 1", "\nhelp: "]),
         ("-o a.exr", ["a.exr: the extension .exr", ".npy, .csv or .ply"]),
         ("-o a", ["a: the file name has no extension", ".npy, .csv or .ply"]),
