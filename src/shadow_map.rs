@@ -3,23 +3,23 @@
 //! - Around each place of a light, a cube of maps tells what is nearest to it. A pixel is lit if what the map tells in its
 //!   direction is not between the two. Area lights are some places, spread evenly, whose shadows add up to a soft one.
 //! - Against the thesis: maps hold primitives instead of depths, and pixels meet those again, exactly. So shadows have edges
-//!   as sharp as with rays, and there is no depth bias: only what is nearer to a surface than 2·10^-6 of its distance from the camera,
-//!   the origin and its own corners casts no shadow on it. What no texel sees, since it is thinner or behind something else, casts none either; a gap
+//!   as sharp as with rays, and there is no depth bias: only what is nearer to a surface, or to the light, than 2·10^-6 of the
+//!   distances from the camera and the origin casts no shadow. What no texel sees, since it is thinner or behind something else, casts none either; a gap
 //!   between triangles that is thinner than a texel is taken for a crack, and closed, if it is more than two texels away.
 //! - Glass and mirrors cast hard shadows: photons bring the light that passes them.
 //! - Places are the same for all pixels: few of them give steps, where rays give noise.
 //! - Cost: for each place a draw of the scene and one pass over the picture for each side of the cube that it shines through:
 //!   five for area lights, one for a narrow cone. On llvmpipe that is about twice the processor time of as many rays
-//!   (`render cornell-boxes --photons 1e3`: 3.3 s against 1.6 s in all). Memory: 16 bytes a pixel, 2 MiB, and 48 bytes for each primitive.
+//!   (`render cornell-boxes --photons 1e3`: 3.3 s against 1.6 s in all). Memory: 16 bytes a pixel, 2 MiB, and 64 bytes for each primitive.
 
-use glam::{UVec2, Vec3, Vec4};
+use glam::{DVec3, UVec2, Vec3, Vec4};
 
 use crate::cube_map::{CubeMap, FACES, shines_through};
 use crate::error::Result;
 use crate::gl::{Gl, Pass, Program, ShaderSource, StateGuard, Target, Texture, TextureFormat, glsl};
 use crate::image::Image;
 use crate::maps::SurfaceMaps;
-use crate::scene::{LightPlace, Scene};
+use crate::scene::{LightPlace, Scene, plane};
 
 const LABEL: &str = "direct light by shadow map";
 
@@ -27,8 +27,10 @@ const LABEL: &str = "direct light by shadow map";
 const SIDE: u16 = 512;
 /// Texels beyond a side's edges: the four around a direction may be one past them.
 const BORDER: u16 = 1;
-/// Primitives in a row of their texture, which has three texels for each: no driver has narrower ones than 1024.
-const ROW: usize = 341;
+/// Texels of each primitive.
+const TEXELS: usize = 4;
+/// Primitives in a row of their texture: no driver has narrower ones than 1024.
+const ROW: usize = 1024 / TEXELS;
 
 /// The maps of one scene, one at a time, and the light that they let through.
 #[derive(Debug)]
@@ -105,21 +107,24 @@ fn cosine(angle: f32) -> f32 {
     f64::from(angle).cos() as f32
 }
 
-/// Triangles and spheres in the order of their numbers, three texels each.
+/// Triangles and spheres in the order of their numbers, [`TEXELS`] each.
 fn primitives(scene: &Scene) -> Image<[f32; 4]> {
     let geometry = scene.geometry();
     let texel = |at: Vec3, last: f32| at.extend(last).to_array();
     let triangles = geometry.triangles.iter().flat_map(|triangle| {
         let [a, b, c] = geometry.corners(triangle);
-        [texel(a, 0.0), texel(b - a, 0.0), texel(c - a, 0.0)]
+        let (normal, distance) = plane([a, b, c], DVec3::ZERO);
+        [texel(a, 0.0), texel(b - a, 0.0), texel(c - a, 0.0), texel(normal, distance)]
     });
-    let spheres =
-        geometry.spheres.iter().flat_map(|sphere| [texel(sphere.centre, sphere.radius), [0.0; 4], [0.0; 4]]);
+    let spheres = geometry
+        .spheres
+        .iter()
+        .flat_map(|sphere| [texel(sphere.centre, sphere.radius), [0.0; 4], [0.0; 4], [0.0; 4]]);
     let mut texels: Vec<_> = triangles.chain(spheres).collect();
-    let rows = texels.len().div_ceil(3 * ROW).max(1);
-    texels.resize(3 * ROW * rows, [0.0; 4]);
+    let rows = texels.len().div_ceil(TEXELS * ROW).max(1);
+    texels.resize(TEXELS * ROW * rows, [0.0; 4]);
     #[expect(clippy::cast_possible_truncation, reason = "fewer than 2^24 primitives")]
-    Image::from_values(UVec2::new(3 * ROW as u32, rows as u32), texels)
+    Image::from_values(UVec2::new((TEXELS * ROW) as u32, rows as u32), texels)
 }
 
 pub(crate) fn source() -> ShaderSource {

@@ -2,17 +2,15 @@
 
 // The nearest primitive in each direction, from 1; 0 for none.
 uniform usampler2D nearest;
-// Three texels for each: corner and two edges of a triangle; centre and radius of a sphere.
+// Four texels for each: corner and two edges of a triangle, then its normal and the distance of its plane from the origin along that; or
+// centre and radius of a sphere.
 uniform sampler2D primitives;
-// Sizes of the numbers that the pixel's place was found from, in scene units.
+// Sizes of the numbers that the pixel's place and the light's were found from, in scene units.
 float coarseness = 0.0;
+float coarseness_of_light = 0.0;
 
-// A place this near to a primitive lies on it: several times what f32 loses of the pixel's place, and of the way to it from the
-// primitive's corner or middle.
-float margin_of(vec3 from_primitive)
-{
-    return 2e-6 * (coarseness + length(from_primitive));
-}
+// A place this near to a primitive lies on it: several times what f32 loses of it.
+const float MARGIN = 2e-6;
 
 vec4 texel(int index)
 {
@@ -26,7 +24,7 @@ bool is_sphere_between(vec3 from, vec3 away, vec3 centre, float radius)
     vec3 outward = from - centre;
     float squared = dot(away, away);
     float half_linear = dot(outward, away);
-    float margin = margin_of(outward);
+    float margin = MARGIN * (coarseness + length(outward));
     float end = 1.0 - margin * inversesqrt(squared);
     if (abs(length(outward) - radius) <= margin) {
         // From the sphere itself only the way through it counts.
@@ -52,19 +50,18 @@ const int BESIDE = 1;
 const int BETWEEN = 2;
 
 // What the triangle does to the light between a place and another that is `away` from it.
-int triangle_between(vec3 from, vec3 away, vec3 corner, vec3 edge1, vec3 edge2)
+int triangle_between(vec3 from, vec3 away, vec3 corner, vec3 edge1, vec3 edge2, vec4 plane)
 {
-    vec3 across = cross(edge1, edge2);
-    float size = length(across);
-    float margin = margin_of(from - corner);
-    float before = dot(across, from - corner) / size;
-    float after = dot(across, from + away - corner) / size;
-    if (before * after >= 0.0 || min(abs(before), abs(after)) <= margin) {
+    float before = dot(plane.xyz, from) - plane.w;
+    float after = dot(plane.xyz, from + away) - plane.w;
+    if (before * after >= 0.0 || abs(before) <= MARGIN * coarseness || abs(after) <= MARGIN * coarseness_of_light) {
         return APART;
     }
+    vec3 across = cross(edge1, edge2);
+    float squared = dot(across, across);
     vec3 met = from + before / (before - after) * away - corner;
-    float second = dot(cross(met, edge2), across) / (size * size);
-    float third = dot(cross(edge1, met), across) / (size * size);
+    float second = dot(cross(met, edge2), across) / squared;
+    float third = dot(cross(edge1, met), across) / squared;
     // A little wide, so that neighbours leave no gap.
     if (min(second, third) >= -1e-5 && second + third <= 1.00001) {
         return BETWEEN;
@@ -76,9 +73,11 @@ int triangle_between(vec3 from, vec3 away, vec3 corner, vec3 edge1, vec3 edge2)
 
 int between(vec3 from, vec3 away, int primitive)
 {
-    vec4 first = texel(3 * primitive);
+    vec4 first = texel(4 * primitive);
     if (first.w > 0.0) {
         return is_sphere_between(from, away, first.xyz, first.w) ? BETWEEN : APART;
     }
-    return triangle_between(from, away, first.xyz, texel(3 * primitive + 1).xyz, texel(3 * primitive + 2).xyz);
+    vec3 edge1 = texel(4 * primitive + 1).xyz;
+    vec3 edge2 = texel(4 * primitive + 2).xyz;
+    return triangle_between(from, away, first.xyz, edge1, edge2, texel(4 * primitive + 3));
 }

@@ -25,6 +25,11 @@ uniform mat4 to_face;
 // Irradiance: red, green and blue, in power per square of a scene unit; a: 1 where lit.
 layout(location = 0) out vec4 irradiance;
 
+float largest(vec3 place)
+{
+    return max(max(abs(place.x), abs(place.y)), abs(place.z));
+}
+
 // The side of the cube that a direction leaves through.
 int face_of(vec3 direction)
 {
@@ -68,7 +73,8 @@ void main()
     if (facing.w <= 0.0 || face_of(-away) != face) {
         return;
     }
-    coarseness = texelFetch(position, pixel, 0).w + max(max(abs(from.x), abs(from.y)), abs(from.z));
+    coarseness = texelFetch(position, pixel, 0).w + largest(from);
+    coarseness_of_light = largest(place);
     float squared = dot(away, away);
     vec3 to_light = away * inversesqrt(squared);
     float cosine = dot(facing.xyz, to_light);

@@ -5,11 +5,16 @@ use std::collections::BTreeMap;
 use glam::{DVec3, Vec3};
 
 use super::emission::{Cone, Leaving};
-use crate::scene::{Light, LightShape, Ray, Scene};
+use crate::scene::{AreaLight, Light, LightShape, Scene};
 
 /// A light is far if it is this many times the radius of the sphere around everything else away from its middle: then less than a
 /// sixtieth of all directions leads there.
 const FAR: f64 = 4.0;
+
+/// Corners times triangles of a light for which is asked whether it lights itself; with more, it is taken to do so.
+const MOST_PAIRS: usize = 1 << 24;
+/// A corner this far before a triangle, as a share of its distance, is in the triangle's plane.
+const IN_PLANE: f64 = 1e-6;
 
 /// What the photons of a far light are aimed at: a sphere around everything but the light itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,57 +30,43 @@ impl Aim {
         let sin = (self.radius / away.length()).min(1.0);
         // 1 - cos without loss for small angles.
         let height = sin * sin / (1.0 + (1.0 - sin * sin).sqrt());
-        Cone { axis: away.normalize(), height }
+        Cone::new(away, height)
     }
 
-    /// Where a photon starts: as near to the sphere as its light lets it. From far away its place and direction, which are kept in
-    /// f32, would be too coarse.
-    pub(super) fn near(&self, scene: &Scene, leaving: &Leaving) -> DVec3 {
-        let Leaving { origin, direction, .. } = *leaving;
-        let skipped = (self.centre - origin).dot(direction) - 1.5 * self.radius;
-        let own = scene.cast(&Ray { origin, direction }).is_some_and(|hit| hit.distance < skipped);
-        if own || skipped <= 0.0 { origin } else { origin + skipped * direction }
+    /// Where a photon starts: near the sphere, as nothing is before that. From far away its place and direction, which are kept in f32,
+    /// would be too coarse.
+    pub(super) fn near(&self, leaving: &Leaving) -> DVec3 {
+        let skipped = (self.centre - leaving.origin).dot(leaving.direction) - 1.5 * self.radius;
+        leaving.origin + skipped.max(0.0) * leaving.direction
     }
 }
 
-/// Where the parts of a scene lie.
-pub(super) struct Surroundings {
-    /// Boxes around the triangles and spheres of each surface and material.
-    boxes: BTreeMap<(u32, u32), (Vec3, Vec3)>,
-    /// Names of the surfaces, as lights have them that are surfaces.
-    names: Vec<String>,
-    shining: Vec<bool>,
-}
+/// Where the parts of a scene lie: boxes around the triangles and spheres of each surface and material.
+pub(super) struct Surroundings(BTreeMap<[u32; 2], (Vec3, Vec3)>);
 
 impl Surroundings {
     pub(super) fn new(scene: &Scene) -> Self {
         let geometry = scene.geometry();
-        let mut boxes: BTreeMap<(u32, u32), (Vec3, Vec3)> = BTreeMap::new();
-        let mut add = |surface, material, low: Vec3, high: Vec3| {
-            let known = boxes.entry((surface, material)).or_insert((low, high));
+        let mut boxes: BTreeMap<[u32; 2], (Vec3, Vec3)> = BTreeMap::new();
+        let mut add = |of, low: Vec3, high: Vec3| {
+            let known = boxes.entry(of).or_insert((low, high));
             *known = (known.0.min(low), known.1.max(high));
         };
         for triangle in &geometry.triangles {
             for corner in geometry.corners(triangle) {
-                add(triangle.surface, triangle.material, corner, corner);
+                add([triangle.surface, triangle.material], corner, corner);
             }
         }
         for sphere in &geometry.spheres {
             let (low, high) = (sphere.centre - sphere.radius, sphere.centre + sphere.radius);
-            add(sphere.surface, sphere.material, low, high);
+            add([sphere.surface, sphere.material], low, high);
         }
-        let shining = scene.materials().iter().map(|material| material.emission != Vec3::ZERO).collect();
-        Self { boxes, names: geometry.surfaces.clone(), shining }
+        Self(boxes)
     }
 
-    /// What a light is aimed at; nothing if it is not far, or if there is nothing else.
+    /// What a light is aimed at; nothing if it is not far, if there is nothing else, or if it lights itself.
     pub(super) fn aim(&self, light: &Light) -> Option<Aim> {
-        let is_own = |&(surface, material): &(u32, u32)| {
-            matches!(light.shape, LightShape::Area(_))
-                && self.shining[material as usize]
-                && self.names[surface as usize] == light.name
-        };
-        let others = self.boxes.iter().filter(|(of, _)| !is_own(of)).map(|(_, &around)| around);
+        let others = self.0.iter().filter(|&(of, _)| light.of != Some(*of)).map(|(_, &around)| around);
         let (low, high) = others.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))?;
         let centre = low.as_dvec3().midpoint(high.as_dvec3());
         let radius = (high.as_dvec3() - low.as_dvec3()).length() / 2.0;
@@ -87,6 +78,24 @@ impl Surroundings {
             }
         };
         let distance = (centre - centre.clamp(nearest.as_dvec3(), farthest.as_dvec3())).length();
-        (radius > 0.0 && distance > FAR * radius).then_some(Aim { centre, radius })
+        let is_far = radius > 0.0 && distance > FAR * radius;
+        let lights_itself = || matches!(&light.shape, LightShape::Area(area) if lights_itself(area));
+        (is_far && !lights_itself()).then_some(Aim { centre, radius })
     }
+}
+
+/// Whether any corner of the light is before one of its triangles, as in a bowl or between two panels.
+fn lights_itself(light: &AreaLight) -> bool {
+    let triangles = light.triangles();
+    if 3 * triangles.len() * triangles.len() > MOST_PAIRS {
+        return true;
+    }
+    triangles.iter().any(|triangle| {
+        let [a, b, c] = triangle.map(Vec3::as_dvec3);
+        let normal = (b - a).cross(c - a).normalize();
+        triangles.iter().flatten().any(|corner| {
+            let away = corner.as_dvec3() - a;
+            normal.dot(away) > IN_PLANE * away.length()
+        })
+    })
 }

@@ -12,7 +12,7 @@ use glam::{DVec3, Vec3};
 use super::TraceSettings;
 use super::aim::{Aim, Surroundings};
 use super::random::{Purpose, Stream};
-use crate::scene::{AreaLight, LightSample, LightShape, Scene, cap_height};
+use crate::scene::{AreaLight, Light, LightSample, LightShape, Scene, cap_height};
 use crate::{Error, Result};
 
 /// By how much a photon starts before its light, as a share of the coordinates: twice what f32 loses.
@@ -22,7 +22,7 @@ const START_MARGIN: f64 = 2.5e-7;
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct EmittedPhoton {
-    /// On the light, in scene units.
+    /// On the light, in scene units; of a far light, on the way from there, before it comes to the rest of the scene.
     pub origin: Vec3,
     /// Of length 1.
     pub direction: Vec3,
@@ -35,7 +35,6 @@ pub struct EmittedPhoton {
 /// What leaves the lights of a scene.
 #[derive(Clone, Debug)]
 pub struct Emission<'a> {
-    scene: &'a Scene,
     parts: Vec<Part<'a>>,
     flux: DVec3,
     settings: TraceSettings,
@@ -52,7 +51,7 @@ struct Part<'a> {
 }
 
 impl<'a> Emission<'a> {
-    /// Shares `settings.photons` among the lights of the scene by their power; each gets at least one, however weak it is.
+    /// Shares `settings.photons` among the lights of the scene by the power that they send; each gets at least one, however weak it is.
     ///
     /// # Errors
     /// [`Error::NoLight`]; [`Error::Setting`] for settings that are not possible, if there are fewer photons than lights, or if
@@ -66,24 +65,26 @@ impl<'a> Emission<'a> {
         if shining.is_empty() {
             return Err(Error::NoLight);
         }
-        let weights: Vec<f64> = shining.iter().map(|light| light.flux().element_sum()).collect();
+        let surroundings = Surroundings::new(scene);
+        let aims: Vec<_> = shining.iter().map(|light| surroundings.aim(light)).collect();
+        let weights: Vec<f64> =
+            shining.iter().zip(&aims).map(|(light, aim)| sent(light, aim.as_ref()).element_sum()).collect();
         let Some(counts) = counts(&weights, settings.photons) else {
             let lights = shining.len();
             return refuse(format!(
                 "each of the {lights} lights takes at least one; ask for {lights} or more"
             ));
         };
-        let surroundings = Surroundings::new(scene);
         let (mut parts, mut first) = (Vec::new(), 0);
-        for (light, count) in shining.iter().zip(counts) {
+        for ((light, aim), count) in shining.iter().zip(aims).zip(counts) {
             if !(light.flux() / f64::from(count)).as_vec3().is_finite() {
                 return refuse(format!("the light \"{}\" is brighter than f32 can tell", light.name));
             }
-            parts.push(Part { shape: &light.shape, first, count, aim: surroundings.aim(light) });
+            parts.push(Part { shape: &light.shape, first, count, aim });
             first += count;
         }
         let flux = shining.iter().map(|light| light.flux()).sum();
-        Ok(Self { scene, parts, flux, settings: *settings })
+        Ok(Self { parts, flux, settings: *settings })
     }
 
     /// The power of all lights, linear RGB.
@@ -123,17 +124,40 @@ impl<'a> Emission<'a> {
         let leaving = match part.shape {
             LightShape::Area(light) => leave_area(light, part.aim.as_ref(), uv, &mut random),
             LightShape::Point { position, direction, half_angle, intensity } => {
-                let cone = Cone { axis: direction.as_dvec3(), height: cap_height(*half_angle) };
+                let cone = Cone::new(direction.as_dvec3(), cap_height(*half_angle));
                 leave_point(position.as_dvec3(), &cone, intensity.as_dvec3(), part.aim.as_ref(), uv)
             }
         };
         let origin = match &part.aim {
-            Some(aim) => aim.near(self.scene, &leaving),
+            Some(aim) => aim.near(&leaving),
             None => leaving.origin,
         };
         let power = (leaving.power / f64::from(part.count)).as_vec3();
         EmittedPhoton { origin: origin.as_vec3(), direction: leaving.direction.as_vec3(), power, id }
     }
+}
+
+/// The power that a light's photons carry, linear RGB: all of it, or of a far one what goes towards the rest of the scene, by some samples.
+fn sent(light: &Light, aim: Option<&Aim>) -> DVec3 {
+    const SIDE: u32 = 8;
+    let Some(aim) = aim else { return light.flux() };
+    let middle = |step: u32| (f64::from(step) + 0.5) / f64::from(SIDE);
+    let cells = (0..SIDE).flat_map(|row| (0..SIDE).map(move |column| [middle(row), middle(column)]));
+    let sum: DVec3 = match &light.shape {
+        LightShape::Area(area) => cells
+            .map(|uv| {
+                let LightSample { position, normal, intensity } = area.sample(uv);
+                let cone = aim.cone(position);
+                cone.solid_angle() * normal.dot(cone.axis).max(0.0) * intensity
+            })
+            .sum(),
+        LightShape::Point { position, direction, half_angle, intensity } => {
+            let cone = Cone::new(direction.as_dvec3(), cap_height(*half_angle));
+            let (position, intensity) = (position.as_dvec3(), intensity.as_dvec3());
+            cells.map(|uv| leave_point(position, &cone, intensity, Some(aim), uv).power).sum()
+        }
+    };
+    sum / f64::from(SIDE * SIDE)
 }
 
 /// How many photons each light gets: by its weight, and at least one; nothing if there are too few.
@@ -177,23 +201,29 @@ pub(super) struct Leaving {
     power: DVec3,
 }
 
-/// Directions around an axis, up to an angle whose 1 - cos is the height.
+/// Directions around an axis, up to an angle whose 1 - cos is the height, which tells small angles as well as large ones.
 pub(super) struct Cone {
-    pub(super) axis: DVec3,
-    pub(super) height: f64,
+    axis: DVec3,
+    height: f64,
 }
 
 impl Cone {
+    pub(super) fn new(axis: DVec3, height: f64) -> Self {
+        Self { axis: axis.normalize(), height }
+    }
+
     fn direction(&self, [u, v]: [f64; 2]) -> DVec3 {
-        around(self.axis, 1.0 - u * self.height, v)
+        let height = u * self.height;
+        around(self.axis, 1.0 - height, (height * (2.0 - height)).max(0.0).sqrt(), v)
     }
 
     fn solid_angle(&self) -> f64 {
         TAU * self.height
     }
 
+    /// Whether a direction of length 1 is in it; at its edge, also where rounding puts it a little beyond.
     fn holds(&self, direction: DVec3) -> bool {
-        1.0 - direction.dot(self.axis) <= self.height
+        (direction - self.axis).length_squared() / 2.0 <= self.height * (1.0 + 1e-9)
     }
 }
 
@@ -236,13 +266,13 @@ fn stratum(index: u32, count: u32, random: &mut Stream) -> [f64; 2] {
 
 /// A direction around `normal` by Lambert's law: as likely as the cosine of its angle to the normal.
 pub(super) fn cosine_around(normal: DVec3, random: &mut Stream) -> DVec3 {
-    around(normal, (1.0 - random.number()).sqrt(), random.number())
+    let cos = (1.0 - random.number()).sqrt();
+    around(normal, cos, (1.0 - cos * cos).max(0.0).sqrt(), random.number())
 }
 
-/// The direction at an angle of the given cosine from `axis`, `turn` of the way around it.
-fn around(axis: DVec3, cos: f64, turn: f64) -> DVec3 {
+/// The direction at an angle of the given cosine and sine from `axis`, `turn` of the way around it.
+fn around(axis: DVec3, cos: f64, sin: f64, turn: f64) -> DVec3 {
     let (side, other) = axis.any_orthonormal_pair();
     let (sin_turn, cos_turn) = (TAU * turn).sin_cos();
-    let sin = (1.0 - cos * cos).max(0.0).sqrt();
     sin * (cos_turn * side + sin_turn * other) + cos * axis
 }

@@ -28,6 +28,8 @@ pub struct Tally {
     pub photons: u64,
     /// How their ways ended.
     pub ends: Ends,
+    /// Power with which they left their lights, linear RGB.
+    emitted: DVec3,
     /// Landings by bounce, then by surface.
     counts: Vec<Vec<u64>>,
     /// Power before absorption by bounce, linear RGB.
@@ -39,7 +41,8 @@ pub struct Tally {
 /// Where photons land, in shares; the file of `varikernel photons --stats`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Landings {
-    /// The power of all lights, linear RGB.
+    /// The power of all lights, linear RGB; of a far light, photons carry what goes towards the rest of the scene, and that is the emitted
+    /// power of which shares are told.
     pub emitted_flux_rgb: [f64; 3],
     /// For k = 0, 1, 2, ...: by surface, the share of the emitted photons whose k-th diffuse landing is there. Without
     /// Russian roulette only, a share of power as well.
@@ -52,6 +55,12 @@ pub struct Landings {
 }
 
 impl Tally {
+    /// Begins with a photon of that power.
+    pub(super) fn leaves(&mut self, power: Vec3) {
+        self.photons += 1;
+        self.emitted += power.as_dvec3();
+    }
+
     /// Counts one landing.
     pub(super) fn add(&mut self, photon: &Photon) {
         let (bounce, surface) = (photon.bounce as usize, photon.surface as usize);
@@ -76,6 +85,7 @@ impl Tally {
     /// Adds the numbers of `other`.
     pub(crate) fn merge(&mut self, other: &Self) {
         self.photons += other.photons;
+        self.emitted += other.emitted;
         self.ends.left += other.ends.left;
         self.ends.absorbed += other.ends.absorbed;
         self.ends.bounces_used += other.ends.bounces_used;
@@ -92,6 +102,12 @@ impl Tally {
         for (our, their) in self.flux.iter_mut().zip(&other.flux) {
             *our += their;
         }
+    }
+
+    /// Power with which all photons left their lights, linear RGB.
+    #[must_use]
+    pub fn power_emitted(&self) -> DVec3 {
+        self.emitted
     }
 
     /// Power that reflection would have sent on after the last landing that was asked for, linear RGB: light that is missing. The sum
@@ -120,7 +136,7 @@ impl Tally {
             is_diffuse[surface as usize] |= matches!(scattering, Scattering::Lambert(_));
         }
 
-        let emitted = emission.flux();
+        let emitted = self.emitted;
         let share = |part: f64, whole: f64| if whole > 0.0 { part / whole } else { 0.0 };
         let bounces = 0..emission.settings().bounces as usize;
         let on_surfaces = |bounce: usize| {
@@ -136,7 +152,7 @@ impl Tally {
             |flux: DVec3| [share(flux.x, emitted.x), share(flux.y, emitted.y), share(flux.z, emitted.z)];
         let in_all = |bounce: usize| of_emitted(self.flux.get(bounce).copied().unwrap_or_default());
         Landings {
-            emitted_flux_rgb: emitted.to_array(),
+            emitted_flux_rgb: emission.flux().to_array(),
             landings: bounces.clone().map(on_surfaces).collect(),
             flux: bounces.map(in_all).collect(),
             cut_off: of_emitted(self.cut_off),

@@ -14,6 +14,8 @@ mod tracer;
 pub use emission::{Emission, EmittedPhoton};
 pub use files::{PhotonFormat, write};
 pub use landings::{Ends, Landings, Tally};
+#[cfg(feature = "render")]
+pub(crate) use scatter::mirrored;
 pub use scatter::{reflect, reflected_by_pane, refract};
 pub use tracer::{trace, trace_from, trace_from_hits, trace_in_batches};
 

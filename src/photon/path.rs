@@ -4,7 +4,7 @@ use glam::{DVec3, Vec3};
 
 use super::emission::cosine_around;
 use super::random::{Purpose, Stream};
-use super::scatter::{reflect, reflected_by_pane, refract};
+use super::scatter::{mirrored, reflected_by_pane, refract};
 use super::{EmittedPhoton, MAX_SPECULAR, Photon, Tally, TraceSettings};
 use crate::scene::{Hit, Ray, Scattering, Scene};
 
@@ -20,7 +20,7 @@ pub(super) fn follow(
     landings: &mut Vec<Photon>,
     tally: &mut Tally,
 ) {
-    tally.photons += 1;
+    tally.leaves(emitted.power);
     let mut random = Stream::new(settings.seed, emitted.id, Purpose::Bounces);
     let origin = emitted.origin.as_dvec3();
     let mut ray = Ray { origin, direction: emitted.direction.as_dvec3().normalize() };
@@ -116,12 +116,6 @@ fn survives(settings: &TraceSettings, reflectance: Vec3, power: &mut Vec3, rando
         *power /= chance;
     }
     *power != Vec3::ZERO
-}
-
-/// The direction after a mirror, at the smooth normal where it stays before the surface.
-fn mirrored(ray: &Ray, hit: &Hit, side: f64) -> DVec3 {
-    let smooth = reflect(ray.direction, side * hit.smooth_normal);
-    if side * smooth.dot(hit.normal) > 0.0 { smooth } else { reflect(ray.direction, hit.normal) }
 }
 
 /// The direction behind glass, or nothing by chance for Fresnel's share, and where all light is reflected.

@@ -2,10 +2,18 @@
 
 use glam::DVec3;
 
+use crate::scene::{Hit, Ray};
+
 /// The mirror image of a direction at a surface.
 #[must_use]
 pub fn reflect(direction: DVec3, normal: DVec3) -> DVec3 {
     direction - 2.0 * direction.dot(normal) * normal
+}
+
+/// The direction after a mirror that is met from the side whose sign is `side`, at the smooth normal where it stays before the surface.
+pub(crate) fn mirrored(ray: &Ray, hit: &Hit, side: f64) -> DVec3 {
+    let smooth = reflect(ray.direction, side * hit.smooth_normal);
+    if side * smooth.dot(hit.normal) > 0.0 { smooth } else { reflect(ray.direction, hit.normal) }
 }
 
 /// The direction behind a surface by Snell's law, and the share of light that is reflected instead by Fresnel's

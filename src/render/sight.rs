@@ -8,8 +8,8 @@ use rayon::prelude::*;
 
 use crate::error::Result;
 use crate::maps::SurfaceMaps;
-use crate::photon::{reflect, reflected_by_pane, refract};
-use crate::scene::{Hit, Ray, Scattering, Scene};
+use crate::photon::{mirrored, reflected_by_pane, refract};
+use crate::scene::{Ray, Scattering, Scene};
 use crate::view::View;
 
 /// Mirrors and glass in a row.
@@ -136,10 +136,4 @@ impl Sight {
             }
         }
     }
-}
-
-/// The direction after a mirror, at the smooth normal where it stays before the surface.
-fn mirrored(ray: &Ray, hit: &Hit, side: f64) -> DVec3 {
-    let smooth = reflect(ray.direction, side * hit.smooth_normal);
-    if side * smooth.dot(hit.normal) > 0.0 { smooth } else { reflect(ray.direction, hit.normal) }
 }

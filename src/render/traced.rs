@@ -21,7 +21,7 @@ const UPLOAD: usize = 1 << 20;
 pub(super) struct Traced {
     pub(super) emitted: u32,
     pub(super) landings: u64,
-    /// Share of the lights' power that would have gone on after the last landing.
+    /// Share of the photons' power that would have gone on after the last landing.
     pub(super) cut_off_share: f64,
     /// Those that may be seen, on the GPU.
     pub(super) points: PhotonPoints,
@@ -84,7 +84,8 @@ impl Traced {
         };
         points.upload(&seen)?;
         let grid = needs_grid.then(|| PhotonGrid::new(&all));
-        let cut_off_share = tally.power_cut_off().element_sum() / emission.flux().element_sum();
+        let cut_off_share =
+            tally.power_cut_off().element_sum() / tally.power_emitted().element_sum().max(f64::MIN_POSITIVE);
         Ok(Self { emitted: trace.photons, landings: tally.total(), cut_off_share, points, grid })
     }
 }

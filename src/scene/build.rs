@@ -69,8 +69,8 @@ fn shining(geometry: &Geometry, materials: &[Material]) -> Vec<Light> {
             groups.entry((triangle.surface, triangle.material)).or_default().push(triangle);
         }
     }
-    let light = |((surface, material), triangles): ((u32, u32), Vec<&Triangle>)| {
-        let material = &materials[material as usize];
+    let light = |((surface, number), triangles): ((u32, u32), Vec<&Triangle>)| {
+        let material = &materials[number as usize];
         let corners = triangles.iter().map(|triangle| geometry.corners(triangle)).collect();
         let texture = material.emission_texture.as_ref().map(|texture| PlacedTexture {
             texture: Arc::clone(texture),
@@ -83,6 +83,7 @@ fn shining(geometry: &Geometry, materials: &[Material]) -> Vec<Light> {
         });
         Light {
             name: geometry.surfaces[surface as usize].clone(),
+            of: Some([surface, number]),
             shape: LightShape::Area(AreaLight::new(corners, material.emission, texture)),
         }
     };
@@ -164,7 +165,7 @@ impl Builder<'_> {
             }
             _ => return wrong("these fields together make no light"),
         };
-        Ok(Some(Light { name: name.get_ref().clone(), shape }))
+        Ok(Some(Light { name: name.get_ref().clone(), of: None, shape }))
     }
 
     fn material(&self, name: &Spanned<String>, entry: &MaterialEntry) -> Result<Material> {
@@ -291,6 +292,10 @@ impl Builder<'_> {
         for mut light in std::mem::take(&mut mesh.lights) {
             if let LightShape::Point { position, .. } = &mut light.shape {
                 *position = *position * scale + translate;
+                if !mesh::is_possible(position) {
+                    let problem = format!("the light \"{}\" is at {position}", light.name);
+                    return Err(refuse((problem, "scale the mesh down")));
+                }
             }
             self.mesh_lights.push(light);
         }

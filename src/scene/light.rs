@@ -11,6 +11,8 @@ use super::texture::PlacedTexture;
 pub struct Light {
     /// Its name; for a surface that shines, the surface's.
     pub name: String,
+    /// Indices of the surface and the material that shine; none for a light without a body.
+    pub of: Option<[u32; 2]>,
     /// Where the light leaves.
     pub shape: LightShape,
 }
@@ -59,10 +61,12 @@ pub struct LightSample {
     pub intensity: DVec3,
 }
 
-/// Samples along each side of a triangle that find its mean radiance.
-const MEAN_STEPS: u32 = 8;
-/// The chance of a triangle is at least that of one with this share of the light's mean radiance, so that a bright texel that no
-/// sample of the mean met is found all the same.
+/// Samples along each side of a triangle that find its mean radiance: as many as it has texels there, within these limits.
+const MEAN_STEPS: [f64; 2] = [8.0, 256.0];
+/// Samples of all triangles of a light, more or less.
+const MEAN_SAMPLES: f64 = 4e6;
+/// Each triangle gets places, and the light power, as if its mean radiance were at least this share of that of the whole image: a bright
+/// texel that no sample of the mean met is found all the same.
 const LEAST_RADIANCE: f64 = 0.05;
 
 impl AreaLight {
@@ -79,18 +83,23 @@ impl AreaLight {
         );
         let areas: Vec<f64> = triangles.iter().map(area).collect();
         let whole: f64 = areas.iter().sum();
+        let least = texture.as_ref().map_or(DVec3::ZERO, |texture| LEAST_RADIANCE * texture.texture.mean());
         let means: Vec<DVec3> = match &texture {
             None => Vec::new(),
             Some(texture) => (0..triangles.len()).map(|index| texture.mean(index)).collect(),
         };
-        let mean = match &texture {
-            None => DVec3::ONE,
-            Some(_) => means.iter().zip(&areas).map(|(&mean, &area)| mean * area).sum::<DVec3>() / whole,
+        let sum: DVec3 = means.iter().zip(&areas).map(|(&mean, &area)| mean * area).sum();
+        let mean = if texture.is_none() {
+            DVec3::ONE
+        } else if sum == DVec3::ZERO {
+            // What no sample met is at least told from what is black.
+            least
+        } else {
+            sum / whole
         };
         let weight = |index: usize| {
             let Some(own) = means.get(index) else { return areas[index] };
-            let colour = radiance.as_dvec3();
-            areas[index] * (own.dot(colour) + LEAST_RADIANCE * mean.dot(colour)).max(f64::MIN_POSITIVE)
+            areas[index] * (*own + least).dot(radiance.as_dvec3()).max(f64::MIN_POSITIVE)
         };
         let weights: f64 = (0..areas.len()).map(weight).sum();
         let mut sum = 0.0;
@@ -144,22 +153,28 @@ impl AreaLight {
 impl PlacedTexture {
     /// Linear RGB on a triangle, at the shares of its second and third corner.
     pub(super) fn at(&self, triangle: usize, shares: DVec2) -> DVec3 {
-        let [corner, second, third] = self.coordinates[triangle].map(Vec2::as_dvec2);
-        let place = corner + shares.x * (second - corner) + shares.y * (third - corner);
-        self.texture.at(place).as_dvec3()
+        self.texture.between(self.coordinates[triangle], shares).as_dvec3()
     }
 
     /// Mean over a triangle.
     fn mean(&self, triangle: usize) -> DVec3 {
-        let middle = |step: u32| (f64::from(step) + 0.5) / f64::from(MEAN_STEPS);
+        let [corner, second, third] = self.coordinates[triangle].map(Vec2::as_dvec2);
+        let size = self.texture.size().as_dvec2();
+        let texels = ((second - corner) * size).length().max(((third - corner) * size).length());
+        let [fewest, most] = MEAN_STEPS;
+        #[expect(clippy::cast_precision_loss, reason = "fewer than 2^52 triangles")]
+        let affordable = (MEAN_SAMPLES / self.coordinates.len() as f64).sqrt();
+        let steps = texels.min(affordable).min(most).max(fewest).ceil();
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most 256")]
+        let middles: Vec<f64> = (0..steps as u32).map(|step| (f64::from(step) + 0.5) / steps).collect();
         let mut sum = DVec3::ZERO;
-        for row in 0..MEAN_STEPS {
-            for column in 0..MEAN_STEPS {
-                let (share, v) = (middle(row).sqrt(), middle(column));
+        for &u in &middles {
+            for &v in &middles {
+                let share = u.sqrt();
                 sum += self.at(triangle, DVec2::new(share * (1.0 - v), share * v));
             }
         }
-        sum / f64::from(MEAN_STEPS * MEAN_STEPS)
+        sum / (steps * steps)
     }
 }
 

@@ -160,13 +160,12 @@ impl Scene {
         if !self.has_patterns {
             return material.scattering;
         }
-        let Some((vertices, [first, second, third])) = self.corners_around(hit) else {
-            return material.scattering;
-        };
+        let Some((vertices, shares)) = self.corners_around(hit) else { return material.scattering };
         let [a, b, c] = vertices.map(|vertex| vertex.colour);
-        let colour = first * a + second * b + third * c;
+        let Vec2 { x: second, y: third } = shares.as_vec2();
+        let colour = (1.0 - second - third) * a + second * b + third * c;
         let texel = material.reflectance_texture.as_ref().map_or(Vec3::ONE, |texture| {
-            texture.at(between(vertices.map(|vertex| vertex.coordinates[0]), [first, second, third]))
+            texture.between(vertices.map(|vertex| vertex.coordinates[0]), shares)
         });
         material.scattering.times((colour * texel).clamp(Vec3::ZERO, Vec3::ONE))
     }
@@ -186,15 +185,14 @@ impl Scene {
         }
         let Some(texture) = &material.emission_texture else { return material.emission };
         let Some((vertices, shares)) = self.corners_around(hit) else { return material.emission };
-        material.emission * texture.at(between(vertices.map(|vertex| vertex.coordinates[1]), shares))
+        material.emission * texture.between(vertices.map(|vertex| vertex.coordinates[1]), shares)
     }
 
-    /// The corners of the triangle that was hit, and their shares of the place; nothing for a sphere.
-    fn corners_around(&self, hit: &Hit) -> Option<([&Vertex; 3], [f32; 3])> {
-        let shares = self.target.shares(hit.primitive, hit.position)?.as_vec2();
+    /// The corners of the triangle that was hit, and the shares of the second and third; nothing for a sphere.
+    fn corners_around(&self, hit: &Hit) -> Option<([&Vertex; 3], DVec2)> {
+        let shares = self.target.shares(hit.primitive, hit.position)?;
         let triangle = &self.geometry.triangles[hit.primitive as usize];
-        let vertices = triangle.vertices.map(|vertex| &self.geometry.vertices[vertex as usize]);
-        Some((vertices, [1.0 - shares.x - shares.y, shares.x, shares.y]))
+        Some((triangle.vertices.map(|vertex| &self.geometry.vertices[vertex as usize]), shares))
     }
 
     /// Where a ray starts that leaves a surface at `position` on the side to which `normal` points: so close to it that
@@ -203,11 +201,6 @@ impl Scene {
     pub fn start(&self, position: DVec3, normal: DVec3) -> DVec3 {
         self.target.start(position, normal)
     }
-}
-
-/// The texture coordinates of a place with the given shares of three corners.
-fn between(corners: [Vec2; 3], shares: [f32; 3]) -> DVec2 {
-    corners.iter().zip(shares).map(|(corner, share)| f64::from(share) * corner.as_dvec2()).sum()
 }
 
 impl fmt::Debug for Scene {

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::sync::LazyLock;
 
-use glam::{DVec2, UVec2, Vec2, Vec3};
+use glam::{DVec2, DVec3, UVec2, Vec2, Vec3};
 
 /// What continues an image beyond its edges.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -70,6 +70,18 @@ impl Texture {
         let upper = self.texel(column, row).lerp(self.texel(column + 1.0, row), share.x);
         let lower = self.texel(column, row + 1.0).lerp(self.texel(column + 1.0, row + 1.0), share.x);
         upper.lerp(lower, share.y)
+    }
+
+    /// The same at the shares of the second and third of three corners.
+    pub(super) fn between(&self, corners: [Vec2; 3], shares: DVec2) -> Vec3 {
+        let [corner, second, third] = corners.map(Vec2::as_dvec2);
+        self.at(corner + shares.x * (second - corner) + shares.y * (third - corner))
+    }
+
+    /// Mean of all texels, linear RGB.
+    pub(super) fn mean(&self) -> DVec3 {
+        let sum: DVec3 = self.texels.iter().map(|&texel| linear(texel).as_dvec3()).sum();
+        sum / (f64::from(self.size.x) * f64::from(self.size.y))
     }
 
     fn texel(&self, column: f64, row: f64) -> Vec3 {

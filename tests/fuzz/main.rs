@@ -63,7 +63,7 @@ fn round(name: &str) {
         None => 1,
     };
     let mut mutator = Mutator::new(seed);
-    let files = if name == "window-settings" { FILES_OF_PROGRAM } else { FILES };
+    let files = if name == "window_settings" { FILES_OF_PROGRAM } else { FILES };
     let begun = Instant::now();
     let mut done = 0;
     // The seeds themselves come first.
@@ -121,7 +121,7 @@ rounds! {
     gltf: "gltf",
     glb: "glb",
     scene: "scene",
-    window_settings: "window-settings",
+    window_settings: "window_settings",
     bench: "bench",
     reproduction: "reproduction",
     study: "study",

@@ -89,7 +89,7 @@ pub(crate) const READERS: [Reader; 13] = [
         read: |path| drop(Scene::load(path)),
     },
     Reader {
-        name: "window-settings",
+        name: "window_settings",
         file: "a.json",
         beside: &[],
         seeds: &[("tests/fuzz/seeds/window", "json")],

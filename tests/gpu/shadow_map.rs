@@ -223,3 +223,19 @@ fn a_small_thing_casts_a_shadow_in_a_large_scene() {
     let without = picture(&gl, &lamp_and_wall(&lamp, far), 96, DirectLight::ShadowMap, 1);
     assert!(differing(&traced, &without.direct, 1e-3) > 30, "a plate that is left out is seen");
 }
+
+/// A plane that is a million times as wide as it is far from the lamp.
+#[test]
+fn a_large_thing_close_to_the_lamp_casts_its_shadow() {
+    let gl = egl();
+    let roof = "[surfaces.roof]\nmaterial = \"white\"\nquads = [[[-1e6, -1e6, 0.9], [1e6, -1e6, 0.9], [1e6, 1e6, 0.9], [-1e6, 1e6, 0.9]]]";
+    let shaded = picture(&gl, &lamp_and_wall(POINT, roof), 33, DirectLight::ShadowMap, 1).direct;
+    assert!(shaded.values().iter().flatten().all(|&value| value == 0.0), "light comes through");
+    // Behind the lamp, and close to the wall that it would shade if it lay before it.
+    for height in ["1.1", "-1.0001"] {
+        let elsewhere = roof.replace("0.9", height);
+        let lit = picture(&gl, &lamp_and_wall(POINT, &elsewhere), 33, DirectLight::ShadowMap, 1).direct;
+        let alone = picture(&gl, &lamp_and_wall(POINT, ""), 33, DirectLight::ShadowMap, 1).direct;
+        assert_eq!(differing(&lit, &alone, 1e-3), 0, "at {height}");
+    }
+}

@@ -48,8 +48,8 @@ fn a_light_with_a_texture_shines_where_the_texture_is_bright() {
     let places = corners.map(|corner| Vec2::new(corner.x / 4.0, corner.y / 2.0));
     let halves = |of: [usize; 3]| (of.map(|index| corners[index]), of.map(|index| places[index]));
     let (first, second) = (halves([0, 1, 2]), halves([0, 2, 3]));
-    let placed = PlacedTexture { texture, coordinates: vec![first.1, second.1] };
-    let light = AreaLight::new(vec![first.0, second.0], Vec3::splat(3.0), Some(placed));
+    let hung = PlacedTexture { texture, coordinates: vec![first.1, second.1] };
+    let light = AreaLight::new(vec![first.0, second.0], Vec3::splat(3.0), Some(hung));
     // Radiance 3 on half of an area of 8; most places are on the triangle with the larger bright part.
     let (mean, _) = sampled(&light, 0.0);
     assert!((mean.x - 12.0).abs() < 0.1, "{mean}");
@@ -57,6 +57,24 @@ fn a_light_with_a_texture_shines_where_the_texture_is_bright() {
         let sample = light.sample(uv);
         assert_eq!(sample.intensity.x > 0.0, sample.position.x >= 2.0, "{sample:?}");
     }
+}
+
+#[test]
+fn a_few_bright_texels_of_a_large_image_are_a_light() {
+    // 2 x 2 of 512 x 512 texels, between all samples of 8 x 8 and of 256 x 256.
+    let mut texels = vec![[0; 3]; 512 * 512];
+    for (row, column) in [(300, 200), (300, 201), (301, 200), (301, 201)] {
+        texels[row * 512 + column] = [255; 3];
+    }
+    let texture = Texture::new("led".to_owned(), UVec2::splat(512), texels, [Wrap::Clamp; 2], false);
+    let corners = [Vec2::ZERO, Vec2::X, Vec2::ONE, Vec2::Y];
+    let half = |of: [usize; 3]| of.map(|index| corners[index]);
+    let coordinates = vec![half([0, 1, 2]), half([0, 2, 3])];
+    let triangles = coordinates.iter().map(|places| places.map(|place| place.extend(0.0))).collect();
+    let hung = PlacedTexture { texture: Arc::new(texture), coordinates };
+    let light = AreaLight::new(triangles, Vec3::splat(1e5), Some(hung));
+    let light = varikernel::scene::Light { name: "led".to_owned(), of: None, shape: LightShape::Area(light) };
+    assert!(light.flux().min_element() > 0.0);
 }
 
 #[test]
@@ -115,7 +133,7 @@ fn lands(scene: &Scene) -> (f64, usize) {
 
 #[test]
 fn a_light_that_is_far_aims_at_the_scene_with_the_power_that_goes_there() {
-    for height in [100.0, 5e3, 1e6] {
+    for height in [100.0, 5e3, 1e6, 9e8] {
         let near_square = height * height;
         // Radiance · area of the light · area of the floor / height².
         let area = 2.0 * 0.04 * 4.0 / near_square;
@@ -133,31 +151,60 @@ fn a_light_that_is_far_aims_at_the_scene_with_the_power_that_goes_there() {
                 point,
             ),
         ] {
-            let (power, count) = lands(&floor_under(&light));
+            let scene = floor_under(&light);
+            let (power, count) = lands(&scene);
             // The floor covers 4 / (2 π) of the sphere's disc, so that a share of 0.64 lands, within four deviations.
             assert!(
                 (count as f64 / 4000.0 - 2.0 / PI).abs() < 4.0 * (0.23_f64 / 4000.0).sqrt(),
                 "{count}: {light}"
             );
             assert!((power / expected - 1.0).abs() < 0.05, "{power} instead of {expected}: {light}");
+            // However far, no two land at one place.
+            let (photons, tally) = traced(&scene, &TraceSettings { bounces: 1, ..settings(4000) });
+            let places: std::collections::BTreeSet<_> =
+                photons.iter().map(|photon| photon.position.to_array().map(f32::to_bits)).collect();
+            assert!(places.len() + 5 > photons.len(), "{} of {}: {light}", places.len(), photons.len());
+            // What is sent is what goes to the sphere around the floor, whose disc is π / 2 of the floor.
+            assert!((tally.power_emitted().x / (expected * PI / 2.0) - 1.0).abs() < 0.01, "{light}");
         }
     }
 }
 
 #[test]
-fn a_far_light_that_is_before_itself_or_turned_away_sends_nothing_through() {
-    // Two squares, the lower of which shades the upper: as bright as one.
-    let double =
-        format!("[surfaces.lamp]\nmaterial = \"glow\"\nquads = [{}, {}]", square(100.0), square(99.0));
-    let expected = 2.0 * 0.04 * 4.0 / (99.0 * 99.0);
-    let (power, _) = lands(&floor_under(&double));
-    assert!((power / expected - 1.0).abs() < 0.08, "{power} instead of {expected}");
+fn a_far_light_that_is_turned_away_sends_nothing() {
     let upwards = "[[-0.1, 100, 0.1], [0.1, 100, 0.1], [0.1, 100, -0.1], [-0.1, 100, -0.1]]";
     let away = format!("[surfaces.lamp]\nmaterial = \"glow\"\nquads = [{upwards}]");
     assert_eq!(lands(&floor_under(&away)).0, 0.0);
     // A spot that looks past the floor.
     let spot = "[lights.lamp]\npoint = [0, 100, 0]\nintensity = [3, 3, 3]\ndirection = [1, 0, 0]\nangle_degrees = 20";
     assert_eq!(lands(&floor_under(spot)).0, 0.0);
+}
+
+#[test]
+fn a_light_that_lights_itself_is_not_aimed_at_a_small_thing_beside_it() {
+    // Two squares that face each other, and the floor far below.
+    let other = "[[-0.1, 99, 0.1], [0.1, 99, 0.1], [0.1, 99, -0.1], [-0.1, 99, -0.1]]";
+    let double = format!("[surfaces.lamp]\nmaterial = \"glow\"\nquads = [{}, {other}]", square(100.0));
+    let scene = floor_under(&double);
+    let settings = settings(1000);
+    let emission = Emission::new(&scene, &settings).unwrap();
+    let sum: f64 = (0..1000).map(|id| f64::from(emission.photon(id).power.x)).sum();
+    assert!((sum / (PI * 0.08 * 2.0) - 1.0).abs() < 1e-5, "{sum}");
+}
+
+#[test]
+fn a_sun_leaves_photons_for_a_lamp_by_what_both_send_to_the_scene() {
+    // The sun sends 4π times as much as it takes to put on the sphere around the floor what the lamp sends in all.
+    let (lamp, distance) = (2.0, 1e7_f64);
+    let sun = lamp * 4.0 * distance * distance / 2.0;
+    let scene = floor_under(&format!(
+        "[lights.sun]\npoint = [0, {distance:e}, 0]\nintensity = [{sun:e}, {sun:e}, {sun:e}]\n\
+         [lights.lamp]\npoint = [0, 3, 0]\nintensity = [{lamp}, {lamp}, {lamp}]"
+    ));
+    let settings = settings(1000);
+    let emission = Emission::new(&scene, &settings).unwrap();
+    let of_lamp = (0..1000).filter(|&id| emission.photon(id).origin == Vec3::new(0.0, 3.0, 0.0)).count();
+    assert_eq!(of_lamp, 500);
 }
 
 #[test]

@@ -86,6 +86,11 @@ fn check(part: &Part) -> Result<(), Problem> {
     Ok(())
 }
 
+/// Whether a place is where scenes may be.
+pub(super) fn is_possible(position: &Vec3) -> bool {
+    position.is_finite() && f64::from(position.abs().max_element()) <= MAX_COORDINATE
+}
+
 /// Says in one line what a mesh file holds and the picture will lack.
 pub(super) fn tell(name: &str, left_out: &[String]) {
     if !left_out.is_empty() {
@@ -107,8 +112,7 @@ pub(super) fn add(
     let mut dropped = 0;
     let mut whole = Vec::with_capacity(mesh.parts.len());
     for part in &mesh.parts {
-        let possible = |position: &Vec3| f64::from(position.abs().max_element()) <= MAX_COORDINATE;
-        if !part.positions.iter().all(|position| position.is_finite() && possible(position)) {
+        if !part.positions.iter().all(is_possible) {
             return Err((format!("a coordinate is past {MAX_COORDINATE:e}"), "scale the mesh down"));
         }
         let (with_area, flat): (Vec<[u32; 3]>, Vec<_>) =

@@ -72,7 +72,7 @@ fn interleaved_numbers_stand_a_stride_apart() {
     );
     made.primitive()["attributes"]["TEXCOORD_0"] = json!(2);
     made.json["textures"] = json!([{}]);
-    made.material(json!({"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}));
+    made.material(&json!({"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}));
     let scene = made.load().unwrap();
     assert_eq!(corners(&scene), moved(|at| at));
     for vertex in vertices(&scene) {

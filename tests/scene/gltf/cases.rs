@@ -11,7 +11,7 @@ fn an_emissive_texture_that_is_missing_makes_no_lamp() {
     let mut made = Made::square();
     made.json["images"] = json!([{"uri": "none.png"}]);
     made.json["textures"] = json!([{"source": 0}]);
-    made.material(json!({"emissiveFactor": [1, 1, 1], "emissiveTexture": {"index": 0}}));
+    made.material(&json!({"emissiveFactor": [1, 1, 1], "emissiveTexture": {"index": 0}}));
     let scene = made.load().unwrap();
     assert_eq!(material(&scene).emission, Vec3::ZERO);
     assert_eq!(scene.lights().iter().map(|light| light.name.as_str()).collect::<Vec<_>>(), ["lamp"]);
@@ -20,7 +20,7 @@ fn an_emissive_texture_that_is_missing_makes_no_lamp() {
 #[test]
 fn a_pane_that_transmits_is_no_solid() {
     let mut made = Made::square();
-    made.material(json!({
+    made.material(&json!({
         "pbrMetallicRoughness": {"metallicFactor": 0, "roughnessFactor": 0},
         "extensions": {"KHR_materials_transmission": {"transmissionFactor": 1}},
     }));

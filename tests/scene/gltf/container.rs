@@ -5,8 +5,8 @@ use serde_json::json;
 use super::{Made, corners, load, moved, refuses};
 
 /// A chunk of a GLB, as long as it is.
-fn chunk(kind: &[u8; 4], content: &[u8]) -> Vec<u8> {
-    [&u32::try_from(content.len()).unwrap().to_le_bytes()[..], kind, content].concat()
+fn chunk(kind: [u8; 4], content: &[u8]) -> Vec<u8> {
+    [&u32::try_from(content.len()).unwrap().to_le_bytes()[..], &kind, content].concat()
 }
 
 fn glb(chunks: &[Vec<u8>]) -> Vec<u8> {
@@ -20,14 +20,14 @@ fn square() -> (Vec<u8>, Vec<u8>) {
     let mut made = Made::square();
     let bytes = std::mem::take(&mut made.bytes);
     made.json["buffers"] = json!([{"byteLength": bytes.len()}]);
-    (chunk(b"JSON", made.text().as_bytes()), chunk(b"BIN\0", &bytes))
+    (chunk(*b"JSON", made.text().as_bytes()), chunk(*b"BIN\0", &bytes))
 }
 
 #[test]
 fn a_glb_brings_its_bytes() {
     let (json, bin) = square();
     let plain = glb(&[json.clone(), bin.clone()]);
-    let with_others = glb(&[json.clone(), chunk(b"XTRA", b"1234"), bin.clone(), chunk(b"MORE", b"")]);
+    let with_others = glb(&[json.clone(), chunk(*b"XTRA", b"1234"), bin.clone(), chunk(*b"MORE", b"")]);
     let with_a_tail = [&plain[..], b"after the end"].concat();
     for content in [plain, with_others, with_a_tail] {
         assert_eq!(corners(&load(&content, "a.glb", &[]).unwrap()), moved(|at| at));
@@ -61,7 +61,7 @@ fn a_damaged_glb_is_refused_at_every_length() {
 fn buffers_come_from_files_and_data_of_both_kinds() {
     let mut made = Made::square();
     let bytes = std::mem::take(&mut made.bytes);
-    let percent: String = bytes.iter().map(|byte| format!("%{byte:02x}")).collect();
+    let percent = bytes.iter().fold(String::new(), |text, byte| format!("{text}%{byte:02x}"));
     for uri in [format!("data:,{percent}"), "the%20bytes.bin".to_owned()] {
         made.json["buffers"] = json!([{"uri": uri, "byteLength": bytes.len()}]);
         let scene = made.load_with(&[("the bytes.bin", &bytes)]).unwrap();

@@ -9,7 +9,7 @@ use varikernel::scene::{Light, LightShape};
 use super::Made;
 
 /// The square, and a light in a node below one that is moved and turned.
-fn lit(light: Value) -> Made {
+fn lit(light: &Value) -> Made {
     let mut made = Made::square();
     let half = std::f64::consts::FRAC_1_SQRT_2;
     // A quarter turn around y takes -z to -x.
@@ -30,8 +30,8 @@ fn lights(made: &Made) -> Vec<Light> {
 
 #[test]
 fn a_point_shines_all_around_from_where_its_node_is() {
-    let found = lights(&lit(json!({"type": "point", "color": [1, 0.5, 0], "intensity": 80})));
-    let [Light { name, shape: LightShape::Point { position, half_angle, intensity, .. } }] = &found[..]
+    let found = lights(&lit(&json!({"type": "point", "color": [1, 0.5, 0], "intensity": 80})));
+    let [Light { name, shape: LightShape::Point { position, half_angle, intensity, .. }, .. }] = &found[..]
     else {
         panic!("{found:?}");
     };
@@ -51,7 +51,7 @@ fn a_spot_looks_along_minus_z_of_its_node_and_keeps_its_power() {
         (FRAC_PI_3, FRAC_PI_2, (1.0_f32 / 3.0).acos()),
     ] {
         let spot = json!({"innerConeAngle": inner, "outerConeAngle": outer});
-        let found = lights(&lit(json!({"type": "spot", "intensity": 7, "spot": spot})));
+        let found = lights(&lit(&json!({"type": "spot", "intensity": 7, "spot": spot})));
         let [Light { shape: LightShape::Point { direction, half_angle, intensity, .. }, .. }] = &found[..]
         else {
             panic!("{found:?}");
@@ -64,11 +64,11 @@ fn a_spot_looks_along_minus_z_of_its_node_and_keeps_its_power() {
 
 #[test]
 fn lights_that_do_not_shine_are_not_there() {
-    assert!(lights(&lit(json!({"type": "point", "intensity": 0}))).is_empty());
-    assert!(lights(&lit(json!({"type": "directional"}))).is_empty());
-    assert!(lights(&lit(json!({"type": "area"}))).is_empty());
+    assert!(lights(&lit(&json!({"type": "point", "intensity": 0}))).is_empty());
+    assert!(lights(&lit(&json!({"type": "directional"}))).is_empty());
+    assert!(lights(&lit(&json!({"type": "area"}))).is_empty());
     // In a node that no scene shows.
-    let mut hidden = lit(json!({"type": "point"}));
+    let mut hidden = lit(&json!({"type": "point"}));
     hidden.json["scenes"][0]["nodes"] = json!([0]);
     assert!(lights(&hidden).is_empty());
 }
@@ -76,11 +76,11 @@ fn lights_that_do_not_shine_are_not_there() {
 #[test]
 fn impossible_lights_are_refused() {
     let place = "extensions.KHR_lights_punctual.lights[0]";
-    lit(json!({"type": "point", "intensity": -1}))
+    lit(&json!({"type": "point", "intensity": -1}))
         .refuses(&[place, "its colour times its intensity is [-1, -1, -1]"]);
-    lit(json!({"type": "spot", "spot": {"outerConeAngle": 3}})).refuses(&[place, "the angles 0 and 3"]);
-    lit(json!({"type": "spot"})).refuses(&[place, "no field spot"]);
-    let mut made = lit(json!({"type": "point"}));
+    lit(&json!({"type": "spot", "spot": {"outerConeAngle": 3}})).refuses(&[place, "the angles 0 and 3"]);
+    lit(&json!({"type": "spot"})).refuses(&[place, "no field spot"]);
+    let mut made = lit(&json!({"type": "point"}));
     made.json["nodes"][2]["extensions"]["KHR_lights_punctual"]["light"] = json!(4);
     made.refuses(&["there is no light 4"]);
 }

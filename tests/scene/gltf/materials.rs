@@ -9,7 +9,7 @@ use crate::{BARE, load_with};
 
 fn made_of(entry: Value) -> Material {
     let mut made = Made::square();
-    made.material(entry);
+    made.material(&entry);
     material(&made.load().unwrap()).clone()
 }
 
@@ -87,7 +87,7 @@ fn what_the_scene_replaces_is_not_read() {
     let colours = made.floats("VEC3", &[0.5; 12]);
     made.primitive()["attributes"]["COLOR_0"] = json!(colours);
     made.material(
-        json!({"pbrMetallicRoughness": {"baseColorFactor": [2, 0, 0, 1]}, "emissiveFactor": [9, 9, 9]}),
+        &json!({"pbrMetallicRoughness": {"baseColorFactor": [2, 0, 0, 1]}, "emissiveFactor": [9, 9, 9]}),
     );
     let text = format!("{BARE}\n[surfaces.thing]\nmaterial = \"white\"\nmesh = {{ file = \"a.gltf\" }}\n");
     let scene = load_with(&text, &[("a.gltf", made.text().as_bytes())]).unwrap();
@@ -99,7 +99,7 @@ fn what_the_scene_replaces_is_not_read() {
 #[test]
 fn impossible_numbers_are_refused_where_the_material_is_used() {
     let mut made = Made::square();
-    made.material(json!({"name": "odd", "pbrMetallicRoughness": {"baseColorFactor": [2, 0, 0, 1]}}));
+    made.material(&json!({"name": "odd", "pbrMetallicRoughness": {"baseColorFactor": [2, 0, 0, 1]}}));
     made.refuses(&["the reflectance of material \"odd\" is [2, 0, 0]"]);
     made.json["materials"] = json!([{}, {"pbrMetallicRoughness": {"baseColorFactor": [2, 0, 0, 1]}}]);
     assert_eq!(material(&made.load().unwrap()).name, "material 1");

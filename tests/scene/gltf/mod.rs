@@ -61,7 +61,7 @@ impl Made {
     }
 
     /// Adds a material, which the first primitive then has.
-    fn material(&mut self, material: Value) {
+    fn material(&mut self, material: &Value) {
         self.json["materials"] = json!([material]);
         self.primitive()["material"] = json!(0);
     }

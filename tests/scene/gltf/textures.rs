@@ -31,7 +31,7 @@ fn textured() -> Made {
     made.primitive()["attributes"]["TEXCOORD_0"] = json!(coordinates);
     made.json["images"] = json!([{"uri": "four colours.png"}]);
     made.json["textures"] = json!([{"source": 0}]);
-    made.material(json!({"pbrMetallicRoughness": {
+    made.material(&json!({"pbrMetallicRoughness": {
         "baseColorFactor": [0.5, 0.5, 0.5, 1], "baseColorTexture": {"index": 0}}}));
     made
 }
@@ -137,7 +137,7 @@ fn a_texture_transform_moves_turns_and_scales() {
     made.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["extensions"] = json!({
         "KHR_texture_transform": {"offset": [0, 1], "rotation": std::f64::consts::FRAC_PI_2, "scale": [0.5, 0.5]}});
     for vertex in vertices(&load(&made)) {
-        let (u, v) = ((vertex.position.x + 1.0) / 2.0, (1.0 - vertex.position.y) / 2.0);
+        let (u, v) = (0.5 + vertex.position.x / 2.0, 0.5 - vertex.position.y / 2.0);
         let expected = Vec2::new(0.5 * v, 1.0 - 0.5 * u);
         assert!(vertex.coordinates[0].abs_diff_eq(expected, 1e-6), "{vertex:?}");
     }

@@ -75,7 +75,7 @@ pub(super) fn light(
         return Err(problem(place, format!("it stands at {position}"), "move or scale its node"));
     }
     let shape = LightShape::Point { position, direction, half_angle, intensity };
-    Ok(Some(Light { name: name(entry, node, own.light.value()), shape }))
+    Ok(Some(Light { name: name(entry, node, own.light.value()), of: None, shape }))
 }
 
 fn name(entry: &Entry, node: &Node, index: usize) -> String {

@@ -59,6 +59,9 @@ impl<'a> Pictures<'a> {
             material.emission_texture = told("map_Ke", &image, texture, notes);
             if material.emission_texture.is_none() {
                 material.emission = Vec3::ZERO;
+            } else if material.emission == Vec3::ZERO {
+                notes.push("Ke 0 beside map_Ke, 1 is taken".to_owned());
+                material.emission = Vec3::ONE;
             }
         }
     }
