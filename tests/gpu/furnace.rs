@@ -156,12 +156,13 @@ fn a_wall_that_shines_a_little_is_as_bright_as_one_that_does_not_and_a_little_mo
                 assert!((with[channel] - without[channel] - emitted).abs() < 1e-6, "{without:?} {with:?}");
             }
         } else {
-            assert_eq!(with, &[0.0; 3]);
+            assert!(with.iter().all(|value| value.abs() <= 0.0), "{with:?}");
         }
     }
     assert_eq!(on_wall, 784);
     // 30 / 3² times 0.6 / π in the middle.
-    assert!((dark.at(24, 24)[0] - 0.6366).abs() < 2e-3, "{:?}", dark.at(24, 24));
+    let by_hand = 30.0 / 9.0 * 0.6 / std::f32::consts::PI;
+    assert!((dark.at(24, 24)[0] - by_hand).abs() < 2e-3, "{:?}", dark.at(24, 24));
 }
 
 /// What is seen in the middle of a picture of a plate of some material before a wall that shines with radiance 1.

@@ -7,9 +7,9 @@ use varikernel::scene::{Material, Scattering};
 use super::{Made, material, vertices};
 use crate::{BARE, load_with};
 
-fn made_of(entry: Value) -> Material {
+fn made_of(entry: &Value) -> Material {
     let mut made = Made::square();
-    made.material(&entry);
+    made.material(entry);
     material(&made.load().unwrap()).clone()
 }
 
@@ -18,7 +18,7 @@ fn colours_metal_and_polish_say_what_happens_to_light() {
     let surface = |metal: f64, rough: f64| {
         let own =
             json!({"baseColorFactor": [0.1, 0.2, 0.3, 1], "metallicFactor": metal, "roughnessFactor": rough});
-        made_of(json!({"pbrMetallicRoughness": own})).scattering
+        made_of(&json!({"pbrMetallicRoughness": own})).scattering
     };
     let colour = Vec3::new(0.1, 0.2, 0.3);
     assert_eq!(surface(0.0, 0.0), Scattering::Lambert(colour));
@@ -36,7 +36,7 @@ fn a_primitive_without_a_material_has_that_of_the_format() {
 #[test]
 fn transmission_is_thin_without_a_volume_and_solid_with_one() {
     let glass = |extensions: Value| {
-        made_of(json!({
+        made_of(&json!({
             "pbrMetallicRoughness": {"baseColorFactor": [1, 0.5, 0.25, 1], "metallicFactor": 0, "roughnessFactor": 0},
             "extensions": extensions,
         }))
@@ -77,8 +77,8 @@ fn transmission_is_thin_without_a_volume_and_solid_with_one() {
 fn emission_is_factor_times_strength() {
     let shining = json!({"emissiveFactor": [1, 0.5, 0],
         "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 6}}});
-    assert_eq!(made_of(shining).emission, Vec3::new(6.0, 3.0, 0.0));
-    assert_eq!(made_of(json!({"emissiveFactor": [1, 0.5, 0]})).emission, Vec3::new(1.0, 0.5, 0.0));
+    assert_eq!(made_of(&shining).emission, Vec3::new(6.0, 3.0, 0.0));
+    assert_eq!(made_of(&json!({"emissiveFactor": [1, 0.5, 0]})).emission, Vec3::new(1.0, 0.5, 0.0));
 }
 
 #[test]
