@@ -1,7 +1,5 @@
 //! Lights that are far from everything else: which way their photons have to go to meet anything.
 
-use std::collections::BTreeMap;
-
 use glam::{DVec3, Vec3};
 
 use super::emission::{Cone, Leaving};
@@ -41,32 +39,10 @@ impl Aim {
     }
 }
 
-/// Where the parts of a scene lie: boxes around the triangles and spheres of each surface and material.
-pub(super) struct Surroundings(BTreeMap<[u32; 2], (Vec3, Vec3)>);
-
-impl Surroundings {
-    pub(super) fn new(scene: &Scene) -> Self {
-        let geometry = scene.geometry();
-        let mut boxes: BTreeMap<[u32; 2], (Vec3, Vec3)> = BTreeMap::new();
-        let mut add = |of, low: Vec3, high: Vec3| {
-            let known = boxes.entry(of).or_insert((low, high));
-            *known = (known.0.min(low), known.1.max(high));
-        };
-        for triangle in &geometry.triangles {
-            for corner in geometry.corners(triangle) {
-                add([triangle.surface, triangle.material], corner, corner);
-            }
-        }
-        for sphere in &geometry.spheres {
-            let (low, high) = (sphere.centre - sphere.radius, sphere.centre + sphere.radius);
-            add([sphere.surface, sphere.material], low, high);
-        }
-        Self(boxes)
-    }
-
+impl Aim {
     /// What a light is aimed at; nothing if it is not far, if there is nothing else, or if it lights itself.
-    pub(super) fn aim(&self, light: &Light) -> Option<Aim> {
-        let others = self.0.iter().filter(|&(of, _)| light.of != Some(*of)).map(|(_, &around)| around);
+    pub(super) fn of(scene: &Scene, light: &Light) -> Option<Self> {
+        let others = scene.boxes().iter().filter(|&(of, _)| light.of != Some(*of)).map(|(_, &around)| around);
         let (low, high) = others.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))?;
         let centre = low.as_dvec3().midpoint(high.as_dvec3());
         let radius = (high.as_dvec3() - low.as_dvec3()).length() / 2.0;
@@ -80,7 +56,7 @@ impl Surroundings {
         let distance = (centre - centre.clamp(nearest.as_dvec3(), farthest.as_dvec3())).length();
         let is_far = radius > 0.0 && distance > FAR * radius;
         let lights_itself = || matches!(&light.shape, LightShape::Area(area) if lights_itself(area));
-        (is_far && !lights_itself()).then_some(Aim { centre, radius })
+        (is_far && !lights_itself()).then_some(Self { centre, radius })
     }
 }
 

@@ -10,7 +10,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
 
 use super::TraceSettings;
-use super::aim::{Aim, Surroundings};
+use super::aim::Aim;
 use super::random::{Purpose, Stream};
 use crate::scene::{AreaLight, Light, LightSample, LightShape, Scene, cap_height};
 use crate::{Error, Result};
@@ -65,8 +65,7 @@ impl<'a> Emission<'a> {
         if shining.is_empty() {
             return Err(Error::NoLight);
         }
-        let surroundings = Surroundings::new(scene);
-        let aims: Vec<_> = shining.iter().map(|light| surroundings.aim(light)).collect();
+        let aims: Vec<_> = shining.iter().map(|light| Aim::of(scene, light)).collect();
         let weights: Vec<f64> =
             shining.iter().zip(&aims).map(|(light, aim)| sent(light, aim.as_ref()).element_sum()).collect();
         let Some(counts) = counts(&weights, settings.photons) else {

@@ -1,5 +1,7 @@
 //! Triangles and spheres, as they are rasterised and as rays see them.
 
+use std::collections::BTreeMap;
+
 use bytemuck::{Pod, Zeroable};
 #[cfg(feature = "render")]
 use glam::DVec3;
@@ -94,6 +96,18 @@ impl Geometry {
             (a.min(b).min(c), a.max(b).max(c))
         });
         around_triangles.chain(self.spheres.iter().map(Sphere::around)).collect()
+    }
+
+    /// The opposite corners of the box around each surface, by the indices of surface and material.
+    pub(super) fn boxes_of_surfaces(&self) -> BTreeMap<[u32; 2], (Vec3, Vec3)> {
+        let triangles = self.triangles.iter().map(|triangle| [triangle.surface, triangle.material]);
+        let spheres = self.spheres.iter().map(|sphere| [sphere.surface, sphere.material]);
+        let mut around: BTreeMap<[u32; 2], (Vec3, Vec3)> = BTreeMap::new();
+        for (of, (low, high)) in triangles.chain(spheres).zip(self.boxes()) {
+            let known = around.entry(of).or_insert((low, high));
+            *known = (known.0.min(low), known.1.max(high));
+        }
+        around
     }
 
     /// The opposite corners of the box around everything.

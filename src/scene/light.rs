@@ -44,8 +44,9 @@ pub struct AreaLight {
     texture: Option<PlacedTexture>,
     /// By triangle, the chance that a place is on it or on one before.
     cumulative: Vec<f64>,
+    /// In square scene units.
     area: f64,
-    /// Mean radiance by area, and power.
+    /// Power, linear RGB.
     flux: DVec3,
 }
 

@@ -33,6 +33,7 @@ pub use texture::{PlacedTexture, Texture, Wrap};
 
 pub use crate::view::{Camera, Ray};
 
+use std::collections::BTreeMap;
 use std::fmt;
 use std::path::Path;
 
@@ -59,6 +60,8 @@ pub struct Scene {
     target: Target,
     /// Whether reflectances differ within a material: by textures or by colours of vertices.
     has_patterns: bool,
+    /// By the indices of surface and material.
+    boxes: BTreeMap<[u32; 2], (Vec3, Vec3)>,
 }
 
 impl Scene {
@@ -105,7 +108,8 @@ impl Scene {
         let target = Target::new(&geometry);
         let has_patterns = materials.iter().any(|material| material.reflectance_texture.is_some())
             || geometry.vertices.iter().any(|vertex| vertex.colour != Vec3::ONE);
-        Self { title, units, camera, lights, materials, geometry, target, has_patterns }
+        let boxes = geometry.boxes_of_surfaces();
+        Self { title, units, camera, lights, materials, geometry, target, has_patterns, boxes }
     }
 
     /// Lights, in the order of their names; surfaces that shine come last.
@@ -130,6 +134,11 @@ impl Scene {
     #[must_use]
     pub fn bounds(&self) -> (Vec3, Vec3) {
         self.geometry.bounds()
+    }
+
+    /// The opposite corners of the box around each surface, by the indices of surface and material.
+    pub(crate) fn boxes(&self) -> &BTreeMap<[u32; 2], (Vec3, Vec3)> {
+        &self.boxes
     }
 
     /// The scene as its camera sees it in a picture of `size`, all of it between the near and the far plane.
