@@ -11,6 +11,7 @@ mod app;
 mod camera;
 mod choices;
 mod engine;
+mod input;
 mod keys;
 mod middle;
 mod panels;

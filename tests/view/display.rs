@@ -146,6 +146,16 @@ impl Program<'_> {
         Image::from_values(UVec2::new(width.into(), height.into()), colours)
     }
 
+    /// What is seen once it stays as it is.
+    #[track_caller]
+    pub(crate) fn look_at_rest(&self) -> Image<[u8; 3]> {
+        let mut before = self.look();
+        self.look_until("rest", |seen| {
+            sleep(Duration::from_millis(500));
+            std::mem::replace(&mut before, seen.clone()) == *seen
+        })
+    }
+
     /// What is seen once it is what `expected` says.
     #[track_caller]
     pub(crate) fn look_until(
@@ -180,6 +190,17 @@ impl Program<'_> {
             sleep(Duration::from_millis(100));
         }
         self.display.fake(BUTTON_RELEASE_EVENT, 1, to);
+    }
+
+    /// Does something while the program is too busy to see it.
+    pub(crate) fn while_busy(&self, act: impl FnOnce()) {
+        let signal = |name: &str| {
+            let status = Command::new("kill").args([name, &self.child.id().to_string()]).status().unwrap();
+            assert!(status.success(), "{name}");
+        };
+        signal("-STOP");
+        act();
+        signal("-CONT");
     }
 
     /// Presses the key of a letter.

@@ -18,6 +18,7 @@ use winit::event_loop::{ActiveEventLoop, ControlFlow};
 use winit::window::{Window, WindowId};
 
 use super::choices::Choices;
+use super::input::Waiting;
 use super::state::{Beside, State};
 use super::views::View;
 use super::{keys, middle, panels, passes};
@@ -50,6 +51,7 @@ struct Running {
     /// What times the passes of a step.
     passes: StageTimes,
     egui: egui_winit::State,
+    waiting: Waiting,
     painter: egui_glow::Painter,
     /// The canvas, as egui knows it; nothing before the first frame.
     canvas: Option<TextureId>,
@@ -162,7 +164,19 @@ impl Running {
         window.window().request_redraw();
         let title = String::new();
         let passes = StageTimes::new(window.gl())?;
-        Ok(Self { state, passes, egui, painter, canvas: None, wake: None, settled: 0, title, window })
+        let waiting = Waiting::default();
+        Ok(Self {
+            state,
+            passes,
+            egui,
+            waiting,
+            painter,
+            canvas: None,
+            wake: None,
+            settled: 0,
+            title,
+            window,
+        })
     }
 
     /// One step of the picture, and the window drawn.
@@ -175,7 +189,8 @@ impl Running {
         if size.min_element() == 0 {
             return Ok(());
         }
-        let input = self.egui.take_egui_input(self.window.window());
+        let mut input = self.egui.take_egui_input(self.window.window());
+        self.waiting.divide(&mut input);
         let context = self.egui.egui_ctx().clone();
         let canvas = self.canvas.unwrap_or_default();
         let state = &mut self.state;
@@ -245,7 +260,7 @@ impl Running {
             state.adapt(whole);
         }
         let goes_on = !(state.paused || state.is_done());
-        if goes_on || wait.is_zero() {
+        if goes_on || wait.is_zero() || !self.waiting.is_empty() {
             self.window.window().request_redraw();
         } else {
             self.wake = Instant::now().checked_add(wait).filter(|_| wait < Duration::from_hours(1));
