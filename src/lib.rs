@@ -103,70 +103,41 @@
 //! | limited | a pixel whose box of radius MR still holds too few |
 //! | SAT | summed-area table |
 
-mod adaptive;
-#[cfg(feature = "render")]
-mod bounce_map;
 #[cfg(feature = "capi")]
 mod capi;
-pub mod certificate;
 #[cfg(any(feature = "egl", feature = "osmesa"))]
 pub mod context;
-#[cfg(feature = "render")]
-mod cube_map;
-mod density;
-mod driver_limits;
 pub mod error;
-pub mod exactness;
-pub mod frame;
-#[cfg(feature = "render")]
-mod gbuffer;
 pub mod gl;
 #[doc = include_str!("guide.md")]
 pub mod guide {}
 pub mod image;
-pub mod irradiance;
+pub mod light;
 pub mod maps;
-mod mask;
 pub mod measure;
-#[cfg(feature = "scene")]
 pub mod photon;
-mod photon_point;
-pub mod pipeline;
-pub mod planner;
-mod position;
-mod radius;
+pub mod radius;
 pub mod reference;
-#[cfg(feature = "render")]
+#[cfg(feature = "scene")]
 pub mod render;
 #[cfg(feature = "scene")]
 pub mod scene;
 pub mod settings;
-#[cfg(feature = "render")]
-mod shade;
-#[cfg(feature = "render")]
-mod shadow_map;
-mod splat;
-pub mod structure;
 #[cfg(feature = "synth")]
 pub mod synth;
 pub mod view;
 
 pub use {glam, glow};
 
-pub use adaptive::AdaptivePipeline;
-pub use certificate::Certificate;
-pub use density::DensityStage;
 pub use error::{Error, Result};
-pub use exactness::CountBounds;
-pub use frame::{Changed, Frame};
 pub use gl::{Gl, StatePolicy};
 pub use image::Image;
-pub use irradiance::IrradiancePipeline;
-pub use maps::{ChosenRadius, DensityMap, HostSurfaces, IrradianceMap, PhotonPoints, RadiusMap, SurfaceMaps};
-pub use mask::{Mask, MaskMaker};
-pub use photon_point::PhotonPoint;
-pub use pipeline::{MemoryRequired, RadiusPipeline};
-pub use position::{HostDepth, PositionMaker};
+pub use light::{DensityStage, GatherStage, IrradiancePipeline, SplatStage};
+pub use maps::{
+    Changed, ChosenRadius, CountBounds, DensityMap, Frame, HostDepth, HostSurfaces, IrradianceMap, Mask,
+    MaskMaker, PhotonPoints, PositionMaker, RadiusMap, SurfaceMaps,
+};
+pub use photon::PhotonPoint;
+pub use radius::{AdaptivePipeline, Certificate, MemoryRequired, RadiusPipeline};
 pub use settings::Settings;
-pub use splat::{GatherStage, SplatStage};
 pub use view::View;

@@ -3,9 +3,9 @@
 use glam::UVec2;
 use proptest::prelude::*;
 use varikernel::Image;
+use varikernel::radius::tables::{most_blocks, stack_size};
 use varikernel::reference::{self, Inside, Table, pyramid, radius, radius_by_table};
 use varikernel::settings::{Edges, Faults, Order, SatSamples, Search, Split};
-use varikernel::structure::{most_blocks, stack_size};
 
 fn search(min_photons: u32, max_radius: u32, edges: Edges) -> Search {
     Search { min_photons, max_radius, edges, order: Order::Binary }

@@ -5,11 +5,11 @@ use std::num::NonZeroU32;
 use glam::UVec2;
 
 use super::{Failure, Status, answer, check_place, check_size, out_of_range};
-use crate::exactness::CountBounds;
-use crate::frame::Changed;
 use crate::gl::Gl;
+use crate::maps::Changed;
+use crate::maps::CountBounds;
 use crate::maps::DensityMap;
-use crate::mask::Mask;
+use crate::maps::Mask;
 
 /// photons_at_most: the host does not know.
 pub const VARIKERNEL_PHOTONS_UNKNOWN: u64 = u64::MAX;

@@ -5,12 +5,12 @@ use glam::UVec2;
 use super::{
     Context, Failure, Handle, PlainFrame, PlainSettings, Status, answer, check_place, destroy, given,
 };
-use crate::adaptive::AdaptivePipeline;
 use crate::error::Error;
-use crate::frame::Frame;
 use crate::gl::{Gl, TextureFormat};
+use crate::maps::Frame;
 use crate::maps::RadiusMap;
-use crate::pipeline::RadiusPipeline;
+use crate::radius::AdaptivePipeline;
+use crate::radius::RadiusPipeline;
 use crate::settings::Settings;
 
 /// Density map in, radius map out, for one size and one set of settings.

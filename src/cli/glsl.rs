@@ -10,7 +10,7 @@ use serde::Serialize;
 use varikernel::gl::{Interface, ShaderSource, ShaderStage, TextureFormat};
 use varikernel::image::write_atomically;
 use varikernel::settings::{Kernel, Method, RadiusChoice, Settings};
-use varikernel::{AdaptivePipeline, MaskMaker, PositionMaker, irradiance, pipeline, render};
+use varikernel::{AdaptivePipeline, MaskMaker, PositionMaker, light, radius, render};
 
 use super::method_options::MethodOptions;
 use super::render::{in_words_of_options, parse_radius};
@@ -157,15 +157,11 @@ fn sources(args: &Args, settings: &Settings) -> Vec<ShaderSource> {
         Density::R32f => TextureFormat::R32Float,
     };
     let mut sources = render::surface_sources();
-    sources.extend([
-        PositionMaker::shader_source(),
-        irradiance::density_source(),
-        MaskMaker::shader_source(),
-    ]);
-    sources.extend(pipeline::shader_sources(density, settings));
+    sources.extend([PositionMaker::shader_source(), light::density_source(), MaskMaker::shader_source()]);
+    sources.extend(radius::shader_sources(density, settings));
     sources.push(AdaptivePipeline::shader_source(density, settings));
     let is_fixed = args.radius != RadiusChoice::Variable;
-    sources.extend(irradiance::spread_sources(args.kernel, is_fixed));
+    sources.extend(light::spread_sources(args.kernel, is_fixed));
     sources.extend(render::shading_sources());
     sources
 }
@@ -200,7 +196,7 @@ fn near_matches(sources: &[ShaderSource], word: &str) -> Vec<String> {
 /// Methods whose usual settings have a shader of that name.
 fn methods_with(name: &str) -> Vec<&'static str> {
     let has = |method: &Method| {
-        let sources = pipeline::shader_sources(TextureFormat::R32Uint, &Settings::of(*method));
+        let sources = radius::shader_sources(TextureFormat::R32Uint, &Settings::of(*method));
         sources.iter().any(|source| source.name() == name)
     };
     Method::ALL.into_iter().filter(has).map(Method::name).collect()

@@ -11,7 +11,7 @@ use varikernel::image::{
     self, Attribute, Format, Picture, ReadOptions, read_counts, write_counts, write_picture,
 };
 use varikernel::measure::{Difference, RadiusSummary, total_photons};
-use varikernel::planner::{self, Census, Choice};
+use varikernel::radius::planner::{self, Census, Choice};
 use varikernel::settings::{Exactness, Settings, Storage};
 use varikernel::{
     Certificate, CountBounds, DensityMap, Error, Frame, Image, Mask, RadiusPipeline, reference,

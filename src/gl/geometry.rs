@@ -6,7 +6,7 @@ use glow::HasContext as _;
 
 use super::Gl;
 use super::pass::{Pass, Target};
-#[cfg(feature = "render")]
+#[cfg(feature = "scene")]
 use super::{Texture, TextureFormat};
 use crate::error::{Error, Result};
 
@@ -188,7 +188,7 @@ impl Target {
     ///
     /// # Errors
     /// Those of [`Texture::new`] and [`Target::new`].
-    #[cfg(feature = "render")]
+    #[cfg(feature = "scene")]
     pub(crate) fn with_depth(gl: &Gl, textures: Vec<Texture>) -> Result<Self> {
         let depth = Texture::new(gl, TextureFormat::Depth32Float, textures[0].size(), 1)?;
         Self::assemble(gl, textures, Some(depth))
@@ -227,7 +227,7 @@ impl Pass<'_> {
     ///
     /// # Errors
     /// [`Error::UnknownUniform`] if the program lacks a name.
-    #[cfg(feature = "render")]
+    #[cfg(feature = "scene")]
     pub(crate) fn draw_triangles(self, vertices: &Vertices, target: &mut Target) -> Result<()> {
         assert!(target.depth.is_some(), "triangles hide each other by depth");
         self.prepare(target, 0, UVec2::ZERO, target.size(), |gl| {

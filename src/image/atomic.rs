@@ -5,7 +5,7 @@ use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use super::temporary::Temporary;
-use crate::{Error, Result};
+use crate::error::{Error, Result};
 
 /// Links that are followed from one to the next, as many as Linux follows.
 const MAX_LINKS: usize = 40;

@@ -9,7 +9,7 @@ use image::{ImageFormat, ImageReader, Limits};
 use super::counts::{Problem, ReadOptions};
 use super::files::{Format, check_signature, open_file};
 use super::{Image, exr, png};
-use crate::{Error, Result};
+use crate::error::{Error, Result};
 
 /// A picture as its file holds it. Row 0 is the first row of the file.
 #[derive(Clone, Debug, PartialEq)]

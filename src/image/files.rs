@@ -10,7 +10,7 @@ use super::attribute::Attribute;
 use super::counts::{Meaning, Problem, ReadOptions};
 use super::picture::{self, Picture};
 use super::{Image, exr, npy, png};
-use crate::{Error, Result};
+use crate::error::{Error, Result};
 
 /// The file formats, told apart by extension in any case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -7,7 +7,7 @@ use glam::UVec2;
 use super::attribute::Attribute;
 use super::exr::{self, Samples};
 use super::{Image, png, write_atomically};
-use crate::Result;
+use crate::error::Result;
 
 /// Layers of one size, to be written as one flat EXR file: channels of the layer `normal` are `normal.R` and so on, those of
 /// the unnamed layer plain `R`, `G` and `B`, which is what viewers show first.

@@ -8,7 +8,7 @@ mod atomic;
 mod attribute;
 #[cfg(feature = "files")]
 mod colour_map;
-#[cfg(feature = "render")]
+#[cfg(feature = "scene")]
 mod colours;
 #[cfg(feature = "files")]
 mod counts;
@@ -16,7 +16,7 @@ mod counts;
 mod exr;
 #[cfg(feature = "files")]
 mod files;
-#[cfg(feature = "render")]
+#[cfg(feature = "scene")]
 mod layers;
 #[cfg(feature = "files")]
 mod npy;
@@ -24,11 +24,11 @@ mod npy;
 mod picture;
 #[cfg(feature = "files")]
 mod png;
-#[cfg(feature = "render")]
+#[cfg(feature = "scene")]
 mod sheet;
 #[cfg(feature = "files")]
 mod temporary;
-#[cfg(feature = "render")]
+#[cfg(feature = "scene")]
 mod tone;
 
 #[cfg(feature = "files")]
@@ -37,7 +37,7 @@ pub use atomic::{check_writable, output_place, write_atomically};
 pub use attribute::{Attribute, AttributeValue};
 #[cfg(feature = "files")]
 pub use colour_map::colour_of_bar;
-#[cfg(feature = "render")]
+#[cfg(feature = "scene")]
 pub use colours::{Colours, read_colours};
 #[cfg(feature = "files")]
 pub use counts::ReadOptions;
@@ -45,17 +45,17 @@ pub use counts::ReadOptions;
 pub(crate) use files::open_file;
 #[cfg(feature = "files")]
 pub use files::{Format, read_counts, read_counts_of, read_mask, write_counts, write_picture};
-#[cfg(feature = "render")]
+#[cfg(feature = "scene")]
 pub use layers::{LayerFile, write_colours};
 #[cfg(feature = "files")]
 pub use picture::Picture;
-#[cfg(feature = "render")]
+#[cfg(feature = "scene")]
 pub use picture::picture_of;
-#[cfg(feature = "render")]
+#[cfg(feature = "scene")]
 pub use sheet::{Tile, contact_sheet};
 #[cfg(feature = "files")]
 pub use temporary::{Discarded, discard_unfinished_files};
-#[cfg(feature = "render")]
+#[cfg(feature = "scene")]
 pub use tone::ToneMap;
 
 use glam::UVec2;

@@ -39,7 +39,7 @@ const TICK: u32 = 3;
 const LABEL_GAP: u32 = 2;
 
 /// The colours of a map alone, a pixel for each value, without a legend.
-#[cfg(feature = "render")]
+#[cfg(feature = "scene")]
 #[must_use]
 pub fn picture_of(image: &Image<u32>, picture: &Picture<'_>) -> Image<[u8; 3]> {
     let colours = ColourMap::new(picture.range.as_ref(), image);

@@ -3,7 +3,7 @@
 use glam::UVec2;
 
 use crate::error::Result;
-#[cfg(feature = "render")]
+#[cfg(feature = "scene")]
 use crate::gl::Texture;
 use crate::gl::{StateGuard, Target, TargetShape, TextureFormat, TextureShape};
 use crate::image::Image;
@@ -55,7 +55,7 @@ impl IrradianceMap {
         &mut self.target
     }
 
-    #[cfg(feature = "render")]
+    #[cfg(feature = "scene")]
     pub(crate) fn as_texture(&self) -> &Texture {
         self.target.texture()
     }

@@ -3,7 +3,7 @@
 use super::RadiusMap;
 use crate::error::{Error, Result};
 use crate::gl::{Gl, StateGuard, Vertices};
-use crate::photon_point::PhotonPoint;
+use crate::photon::PhotonPoint;
 
 /// Photons in a buffer: as many as the table of their areas has entries, and few enough that sums of one buffer's kernels
 /// stay exact to about 2^-9 (see `splat`).

@@ -15,7 +15,7 @@ pub struct SurfaceMaps {
     normal: Texture,
     /// Of our own surfaces, with the target to draw to.
     albedo: Option<Texture>,
-    #[cfg_attr(not(feature = "render"), expect(dead_code, reason = "only scenes are drawn"))]
+    #[cfg_attr(not(feature = "scene"), expect(dead_code, reason = "only scenes are drawn"))]
     target: Option<Target>,
     view: View,
 }
@@ -34,7 +34,7 @@ pub struct HostSurfaces {
 
 impl SurfaceMaps {
     /// Empty maps.
-    #[cfg(feature = "render")]
+    #[cfg(feature = "scene")]
     pub(crate) fn new(gl: &Gl, view: View) -> Result<Self> {
         let plane = || Texture::new(gl, TextureFormat::Rgba32Float, view.size(), 1);
         let target = Target::with_depth(gl, vec![plane()?, plane()?, plane()?])?.labelled(&[
@@ -119,7 +119,7 @@ impl SurfaceMaps {
     }
 
     /// Replaces the albedo of our own surfaces.
-    #[cfg(feature = "render")]
+    #[cfg(feature = "scene")]
     pub(crate) fn set_albedo(&mut self, albedo: &Image<[f32; 4]>) -> Result<()> {
         let gl = self.albedo().gl();
         let _state = StateGuard::new(gl);
@@ -160,12 +160,12 @@ impl SurfaceMaps {
             .set("to_clip", self.view.to_clip())
     }
 
-    #[cfg(feature = "render")]
+    #[cfg(feature = "scene")]
     pub(crate) fn position(&self) -> &Texture {
         &self.position
     }
 
-    #[cfg(feature = "render")]
+    #[cfg(feature = "scene")]
     pub(crate) fn normal(&self) -> &Texture {
         &self.normal
     }
@@ -174,12 +174,12 @@ impl SurfaceMaps {
     ///
     /// # Panics
     /// If the surfaces are a host's: our own mistake.
-    #[cfg(feature = "render")]
+    #[cfg(feature = "scene")]
     pub(crate) fn albedo(&self) -> &Texture {
         self.albedo.as_ref().expect("surfaces of a scene")
     }
 
-    #[cfg(feature = "render")]
+    #[cfg(feature = "scene")]
     pub(crate) fn target(&mut self) -> &mut Target {
         self.target.as_mut().expect("surfaces of a scene")
     }

@@ -9,9 +9,9 @@ mod confidence;
 mod difference;
 #[cfg(feature = "bench")]
 mod fingerprint;
-#[cfg(feature = "render")]
+#[cfg(feature = "scene")]
 mod picture;
-#[cfg(feature = "render")]
+#[cfg(feature = "scene")]
 mod point_pass;
 #[cfg(feature = "report")]
 pub mod report;
@@ -32,9 +32,9 @@ mod unit_pass;
 #[cfg(feature = "bench")]
 pub use confidence::{CONFIDENCE_LEVEL, Confidence, RatioInterval};
 pub use difference::{Difference, Place};
-#[cfg(feature = "render")]
+#[cfg(feature = "scene")]
 pub use picture::{LightError, PictureError};
-#[cfg(feature = "render")]
+#[cfg(feature = "scene")]
 pub use point_pass::PointPass;
 pub use statistics::Statistics;
 pub use summary::{RadiusSummary, total_photons};

@@ -12,8 +12,8 @@ use glam::{DVec3, Vec3};
 use super::TraceSettings;
 use super::aim::Aim;
 use super::random::{Purpose, Stream};
+use crate::error::{Error, Result};
 use crate::scene::{AreaLight, Light, LightSample, LightShape, Scene, cap_height};
-use crate::{Error, Result};
 
 /// By how much a photon starts before its light, as a share of the coordinates: twice what f32 loses.
 const START_MARGIN: f64 = 2.5e-7;
@@ -30,6 +30,17 @@ pub struct EmittedPhoton {
     pub power: Vec3,
     /// Its number, which decides its further way together with the seed.
     pub id: u32,
+}
+
+/// A photon and what it meets first, as rasterised from its light (thesis 2.6.1).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FirstHit {
+    /// As it leaves the light.
+    pub photon: EmittedPhoton,
+    /// The first triangle (its index), or sphere (the number of triangles plus its index).
+    ///
+    /// The place is computed again from it, exactly; where the ray does not meet it, the ray is cast.
+    pub primitive: u32,
 }
 
 /// What leaves the lights of a scene.
@@ -99,13 +110,11 @@ impl<'a> Emission<'a> {
     }
 
     /// Which of the lights that shine a photon leaves, counted from 0 in the order of the scene.
-    #[cfg(feature = "render")]
     pub(crate) fn light(&self, id: u32) -> usize {
         self.parts.partition_point(|part| part.first <= id) - 1
     }
 
     /// Whether the photons of one of the lights that shine start where they come near the scene, and not on the light.
-    #[cfg(feature = "render")]
     pub(crate) fn is_aimed(&self, light: usize) -> bool {
         self.parts[light].aim.is_some()
     }

@@ -8,9 +8,9 @@ use std::path::Path;
 
 use super::records::Records;
 use super::{Emission, Tally, trace_in_batches};
+use crate::error::{Error, Result};
 use crate::image::write_atomically;
 use crate::scene::Scene;
-use crate::{Error, Result};
 
 /// The file formats of photons, told apart by extension in any case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -5,8 +5,11 @@ use glam::{DVec3, Vec3};
 use super::emission::cosine_around;
 use super::random::{Purpose, Stream};
 use super::scatter::{mirrored, reflected_by_pane, refract};
-use super::{EmittedPhoton, MAX_SPECULAR, Photon, Tally, TraceSettings};
+use super::{EmittedPhoton, Photon, Tally, TraceSettings};
 use crate::scene::{Hit, Ray, Scattering, Scene};
+
+/// How often in a row a photon may meet mirrors and glass before it is given up.
+pub const MAX_SPECULAR: u32 = 256;
 
 /// Follows one photon to its end.
 ///

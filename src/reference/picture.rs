@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 use glam::{DVec3, UVec2};
 
 use crate::image::Image;
-use crate::photon_point::PhotonPoint;
+use crate::photon::PhotonPoint;
 use crate::settings::Kernel;
 use crate::view::View;
 

@@ -3,15 +3,20 @@
 //! Surfaces, density, radii, splats and shading are passes on OpenGL; photons and what is seen in mirrors and through glass are
 //! rays on the CPU. Direct light and what photons meet first are either: shadow rays or shadow maps, rays or bounce maps.
 
+mod bounce_map;
+mod cube_map;
 mod direct;
 mod layers;
-mod light;
 mod live;
 mod nearest;
+mod prepared;
 mod reference;
 mod seen_through;
+mod shade;
+mod shadow_map;
 mod sight;
 mod stages;
+pub(crate) mod surfaces;
 mod traced;
 
 pub use layers::{Account, Layers};
@@ -23,26 +28,22 @@ pub use traced::first_hits;
 use bytemuck::Zeroable as _;
 use glam::{DVec3, UVec2, Vec3};
 
-use crate::cube_map;
-use crate::density::DensityStage;
 use crate::error::Result;
-use crate::frame::{Changed, Frame};
-use crate::gbuffer;
 use crate::gl::{Gl, ShaderSource, TextureFormat};
 use crate::image::Image;
-use crate::irradiance;
+use crate::light::DensityStage;
+use crate::light::{self, GatherStage, SplatStage};
+use crate::maps::{Changed, Frame};
 use crate::maps::{ChosenRadius, PhotonPoints, SurfaceMaps};
 use crate::photon::{Emission, PhotonPoint, TraceSettings};
-use crate::pipeline::RadiusPipeline;
+use crate::radius::RadiusPipeline;
 use crate::scene::Scene;
 use crate::settings::{Estimate, Kernel, PictureSettings, RadiusChoice, Search, Settings};
-use crate::shade::{self, ShadeStage, TracedLight};
-use crate::shadow_map;
-use crate::splat::{GatherStage, SplatStage};
 use crate::view::View;
-use light::Light;
 use nearest::PhotonGrid;
+use prepared::Prepared;
 use seen_through::{Wanted, seen_through};
+use shade::{ShadeStage, TracedLight};
 use sight::Place;
 use traced::Traced;
 
@@ -91,17 +92,17 @@ impl Renderer {
         settings.validate()?;
         // What can be refused is refused before anything is traced.
         Emission::new(scene, trace)?;
-        let light = Light::new(gl, scene, settings, progress)?;
+        let prepared = Prepared::new(gl, scene, settings, progress)?;
         let traced = Traced::new(
             gl,
             scene,
-            light.surfaces.view(),
+            prepared.surfaces.view(),
             trace,
-            !light.bent.is_empty(),
+            !prepared.bent.is_empty(),
             settings.first_bounce,
             progress,
         )?;
-        Self::assemble(gl, light, traced)
+        Self::assemble(gl, prepared, traced)
     }
 
     /// The same with photons that the caller traced, without those of direct light.
@@ -118,22 +119,22 @@ impl Renderer {
         photons: &[PhotonPoint],
     ) -> Result<Self> {
         settings.validate()?;
-        let light = Light::new(gl, scene, settings, &mut |_| ())?;
+        let prepared = Prepared::new(gl, scene, settings, &mut |_| ())?;
         let mut points = PhotonPoints::new(gl);
-        let view = light.surfaces.view();
+        let view = prepared.surfaces.view();
         let seen: Vec<_> = photons.iter().copied().filter(|photon| photon.may_be_seen(view)).collect();
         points.upload(&seen)?;
-        let grid = (!light.bent.is_empty()).then(|| PhotonGrid::new(photons));
+        let grid = (!prepared.bent.is_empty()).then(|| PhotonGrid::new(photons));
         let count = u32::try_from(photons.len()).expect("fewer than 2^32 photons");
         Self::assemble(
             gl,
-            light,
+            prepared,
             Traced { emitted: count, landings: count.into(), cut_off_share: 0.0, points, grid },
         )
     }
 
-    fn assemble(gl: &Gl, light: Light, traced: Traced) -> Result<Self> {
-        let Light { surfaces, traced: light, bent } = light;
+    fn assemble(gl: &Gl, prepared: Prepared, traced: Traced) -> Result<Self> {
+        let Prepared { surfaces, traced: light, bent } = prepared;
         let mut density = DensityStage::new(gl, surfaces.size())?;
         density.add(&surfaces, &traced.points)?;
         Ok(Self {
@@ -338,7 +339,7 @@ fn rgb([red, green, blue, _]: [f32; 4]) -> [f32; 3] {
 /// The shaders of a picture beside those of its light by photons: what photons meet first, and what pixels show.
 #[must_use]
 pub fn surface_sources() -> Vec<ShaderSource> {
-    cube_map::sources().into_iter().chain(gbuffer::sources()).collect()
+    cube_map::sources().into_iter().chain(surfaces::sources()).collect()
 }
 
 /// The shaders of a picture after its light by photons: direct light by shadow maps, and all of it together.
@@ -350,6 +351,6 @@ pub fn shading_sources() -> Vec<ShaderSource> {
 /// Every shader that a picture may compile beside those of the radius map.
 #[must_use]
 pub fn shader_sources() -> Vec<ShaderSource> {
-    let light = irradiance::shader_sources();
+    let light = light::shader_sources();
     surface_sources().into_iter().chain(light).chain(shading_sources()).collect()
 }

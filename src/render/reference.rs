@@ -3,20 +3,20 @@
 
 use glam::DVec3;
 
-use super::light::Light;
+use super::prepared::Prepared;
 use super::seen_through::{Wanted, seen_through};
 use super::sight::Place;
 use super::traced::Traced;
 use super::{Layers, Progress, add, pixel_area, rgb};
-use crate::density::DensityStage;
 use crate::error::Result;
 use crate::gl::Gl;
 use crate::image::Image;
+use crate::light::DensityStage;
 use crate::maps::SurfaceMaps;
 use crate::photon::TraceSettings;
+use crate::render::shade::TracedLight;
 use crate::scene::Scene;
 use crate::settings::{FirstBounce, Kernel, PictureSettings};
-use crate::shade::TracedLight;
 
 /// The sums over the seeds so far.
 #[derive(Debug)]
@@ -44,7 +44,7 @@ impl Reference {
         progress: &mut dyn FnMut(Progress),
     ) -> Result<Self> {
         settings.validate()?;
-        let Light { surfaces, traced: light, bent } = Light::new(gl, scene, settings, progress)?;
+        let Prepared { surfaces, traced: light, bent } = Prepared::new(gl, scene, settings, progress)?;
         Ok(Self {
             gl: gl.clone(),
             surfaces,

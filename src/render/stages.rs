@@ -2,12 +2,12 @@
 
 use super::{Account, Renderer};
 use crate::error::Result;
-use crate::frame::Frame;
 use crate::image::Image;
+use crate::light::{GatherStage, SplatStage};
+use crate::maps::Frame;
 use crate::maps::{ChosenRadius, IrradianceMap, PhotonPoints, SurfaceMaps};
-use crate::pipeline::RadiusPipeline;
+use crate::radius::RadiusPipeline;
 use crate::settings::{Estimate, PictureSettings, RadiusChoice};
-use crate::splat::{GatherStage, SplatStage};
 
 /// A renderer with the shaders for a kernel, ready to draw.
 #[derive(Debug)]

@@ -2,13 +2,13 @@
 
 use super::Progress;
 use super::nearest::PhotonGrid;
-use crate::bounce_map::BounceMaps;
 use crate::error::Result;
 use crate::gl::Gl;
 use crate::maps::PhotonPoints;
 use crate::photon::{
     Emission, FirstHit, Photon, PhotonPoint, Tally, TraceSettings, trace_from_hits, trace_in_batches,
 };
+use crate::render::bounce_map::BounceMaps;
 use crate::scene::Scene;
 use crate::settings::FirstBounce;
 use crate::view::View;

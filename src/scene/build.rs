@@ -14,7 +14,7 @@ use super::{
     AreaLight, Camera, Geometry, Light, LightShape, Material, PlacedTexture, Scattering, Scene, Sphere,
     Triangle,
 };
-use crate::{Error, Result};
+use crate::error::{Error, Result};
 
 /// Reads the text of a scene file.
 ///

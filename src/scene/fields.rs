@@ -8,7 +8,7 @@ use toml::Spanned;
 use super::area;
 use super::format::Triple;
 use super::source::Text;
-use crate::Result;
+use crate::error::Result;
 
 /// The largest coordinate, in scene units: its square and cube fit f32 with room.
 pub(super) const MAX_COORDINATE: f64 = 1e9;

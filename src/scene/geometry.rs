@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 
 use bytemuck::{Pod, Zeroable};
-#[cfg(feature = "render")]
 use glam::DVec3;
 use glam::{Vec2, Vec3};
 
@@ -122,7 +121,6 @@ impl Geometry {
 }
 
 /// The normal of a triangle, and the distance of its plane from `origin` along it, in scene units.
-#[cfg(feature = "render")]
 pub(crate) fn plane(corners: [Vec3; 3], origin: DVec3) -> (Vec3, f32) {
     let [a, b, c] = corners.map(Vec3::as_dvec3);
     let normal = (b - a).cross(c - a).normalize();
@@ -138,7 +136,6 @@ impl Sphere {
     }
 
     /// A cube around the sphere, a little larger, as 36 corners of triangles for a rasteriser.
-    #[cfg(feature = "render")]
     pub(crate) fn cube(&self) -> [Vec3; 36] {
         // Six sides of two triangles each: an axis, its direction, and the corners in the plane across it.
         let square = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];

@@ -10,7 +10,6 @@ mod format;
 mod geometry;
 mod intersect;
 mod light;
-#[cfg(feature = "render")]
 mod light_place;
 mod material;
 mod mesh;
@@ -20,13 +19,11 @@ mod texture;
 mod tree;
 
 pub use cast::Hit;
-#[cfg(feature = "render")]
 pub(crate) use geometry::plane;
 pub use geometry::{Geometry, Sphere, Triangle, Vertex};
 pub use intersect::{TriangleEdges, intersect_sphere};
 pub(crate) use light::cap_height;
 pub use light::{AreaLight, Light, LightSample, LightShape, area};
-#[cfg(feature = "render")]
 pub(crate) use light_place::LightPlace;
 pub use material::{Material, Scattering};
 pub use texture::{PlacedTexture, Texture, Wrap};
@@ -39,8 +36,8 @@ use std::path::Path;
 
 use glam::{DVec2, DVec3, UVec2, Vec2, Vec3};
 
+use crate::error::{Error, Result};
 use crate::view::View;
-use crate::{Error, Result};
 use cast::Target;
 use shipped::SHIPPED;
 use source::{Files, Text};

@@ -5,8 +5,8 @@ use std::io::Read as _;
 use std::ops::Range;
 use std::path::{Component, Path, PathBuf};
 
+use crate::error::{Error, Result};
 use crate::image::open_file;
-use crate::{Error, Result};
 
 /// The longest file that is read, in bytes.
 const MAX_BYTES: u64 = 1 << 30;

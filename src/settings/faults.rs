@@ -3,7 +3,7 @@
 use super::{Edges, Method, SatBuild, SatSamples, Settings, Split};
 
 /// Faults of the thesis's printed listings, each of which can be switched on (see
-/// [`structure`](crate::structure#as-printed) for what they do).
+/// [`structure`](crate::radius::tables#as-printed) for what they do).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[expect(clippy::struct_excessive_bools, reason = "each fault can be switched on without the others")]

@@ -7,14 +7,14 @@ mod faults;
 mod irradiance;
 mod kernel;
 mod names;
-#[cfg(feature = "render")]
+#[cfg(feature = "scene")]
 mod picture;
 mod validate;
 
 pub use faults::Faults;
 pub use irradiance::IrradianceSettings;
 pub use kernel::{Kernel, MAX_PICTURE_RADIUS, RadiusChoice};
-#[cfg(feature = "render")]
+#[cfg(feature = "scene")]
 pub use picture::{DirectLight, Estimate, FirstBounce, PictureSettings};
 
 /// The largest possible [`Search::max_radius`]: the area (2 MR + 1)² still fits 32 bits.

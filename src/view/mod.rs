@@ -146,7 +146,7 @@ impl View {
     }
 
     /// From the pinhole to the picture's corner at depth 1, where column 0 and row 0 begin, and to the next column and row.
-    #[cfg(feature = "render")]
+    #[cfg(feature = "scene")]
     pub(crate) fn rays(&self) -> [Vec3; 3] {
         [self.to_corner, self.to_right, self.to_next_row].map(DVec3::as_vec3)
     }

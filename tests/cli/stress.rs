@@ -22,9 +22,9 @@ fn a_quick_run_keeps_every_promise() {
     // The documentation names its rows by these.
     let docs = concat!(
         include_str!("../../README.md"),
-        include_str!("../../src/exactness.rs"),
-        include_str!("../../src/density.rs"),
-        include_str!("../../src/splat/mod.rs")
+        include_str!("../../src/maps/exactness.rs"),
+        include_str!("../../src/light/density.rs"),
+        include_str!("../../src/light/splat.rs")
     );
     for promise in promises {
         let id = promise["promise"]["id"].as_str().unwrap();

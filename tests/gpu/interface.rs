@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use glow::HasContext as _;
 use varikernel::Gl;
 use varikernel::gl::{Interface, ShaderSource, ShaderStage, TextureFormat, Variable};
-use varikernel::pipeline::shader_sources;
+use varikernel::radius::shader_sources;
 
 use crate::shaders::{all_settings, all_sources};
 use crate::support::egl;

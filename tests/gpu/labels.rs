@@ -142,7 +142,6 @@ fn every_object_of_the_library_has_a_name() {
         adaptive,
         borrowed,
     );
-    #[cfg(feature = "render")]
     let pictures = pictures(gl);
     let labels = debugger.labels();
     assert!(labels.len() > 150, "{labels:?}");
@@ -167,11 +166,8 @@ fn every_object_of_the_library_has_a_name() {
     // SAFETY: the context is current, and the name is the host's.
     unsafe { gl.glow().delete_texture(host) };
     drop(others);
-    #[cfg(feature = "render")]
     drop(pictures);
 }
-
-#[cfg(feature = "render")]
 fn pictures(gl: &Gl) -> varikernel::render::Stages {
     use varikernel::settings::{DirectLight, Estimate, PictureSettings};
 
@@ -242,7 +238,7 @@ fn each_pass_is_a_group_that_is_closed_also_after_an_error() {
     GROUPS.take();
     adaptive.update(&Frame::new(&map)).unwrap();
     let labels = closed_groups().expect("groups are closed");
-    let known: Vec<_> = varikernel::pipeline::shader_sources(map.format(), &adaptive.choice().settings)
+    let known: Vec<_> = varikernel::radius::shader_sources(map.format(), &adaptive.choice().settings)
         .iter()
         .map(|source| source.label().to_owned())
         .chain(["census".to_owned()])

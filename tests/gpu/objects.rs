@@ -18,7 +18,6 @@ fn every_object_is_freed_and_the_state_put_back_also_after_an_error() {
     let gl = driver::open();
     let before = live();
     assert!(before[4] == 2 && before[5] == 1, "the counters count: {before:?}");
-    #[cfg(feature = "render")]
     fail_in_pictures(&gl);
     {
         let density = random_map(12, 19, 4);
@@ -81,7 +80,6 @@ fn every_object_is_freed_and_the_state_put_back_also_after_an_error() {
 }
 
 /// Whatever object of a picture fails half-way, what was made before it is freed.
-#[cfg(feature = "render")]
 fn fail_in_pictures(gl: &varikernel::Gl) {
     use varikernel::render::Renderer;
     use varikernel::settings::{Estimate, PictureSettings};

@@ -1,8 +1,8 @@
 //! One suite for every exact method: equal to the definition, pixel for pixel.
 
 use proptest::prelude::*;
-use varikernel::exactness::plan;
 use varikernel::gl::TextureFormat;
+use varikernel::maps::exactness::plan;
 use varikernel::settings::{Edges, Matching, Method, Order, Search, Settings, Split, Storage};
 use varikernel::{CountBounds, DensityMap, Error, Gl, Image, RadiusPipeline, reference};
 

@@ -9,7 +9,7 @@ use std::process::Command;
 
 use varikernel::gl::{ShaderSource, ShaderStage, TextureFormat};
 use varikernel::measure::Unit;
-use varikernel::pipeline::shader_sources;
+use varikernel::radius::shader_sources;
 use varikernel::settings::{
     Edges, Exactness, Faults, Matching, Method, Order, SatBuild, SatSamples, Search, Settings, Split,
     Storage, Variation,
@@ -79,7 +79,7 @@ pub(crate) fn all_settings() -> Vec<Settings> {
 pub(crate) fn all_sources() -> Vec<ShaderSource> {
     let mut sources = BTreeMap::from(Unit::ALL.map(|unit| (unit.source().fragment(), unit.source())));
     let makers = [MaskMaker::shader_source(), PositionMaker::shader_source()];
-    for source in varikernel::irradiance::shader_sources().into_iter().chain(makers) {
+    for source in varikernel::light::shader_sources().into_iter().chain(makers) {
         sources.insert(source.vertex() + &source.fragment(), source);
     }
     for settings in all_settings() {
@@ -94,7 +94,6 @@ pub(crate) fn all_sources() -> Vec<ShaderSource> {
     for source in varikernel::measure::study::shader_sources() {
         sources.insert(source.fragment(), source);
     }
-    #[cfg(feature = "render")]
     for source in
         varikernel::render::shader_sources().into_iter().chain([varikernel::measure::PointPass::source()])
     {
@@ -185,8 +184,6 @@ fn every_method_runs_on_the_commands_of_3_3_core_alone() {
         assert!(sample.query.as_secs() < 60, "{sample:?}");
     }
 }
-
-#[cfg(feature = "render")]
 #[test]
 fn every_stage_of_a_picture_runs_on_the_commands_of_3_3_core_alone() {
     use varikernel::photon::TraceSettings;

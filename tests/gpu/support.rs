@@ -6,7 +6,7 @@ use varikernel::measure::Difference;
 use varikernel::settings::{
     Edges, Matching, Method, Order, SatBuild, SatSamples, Search, Settings, Split, Storage,
 };
-use varikernel::{CountBounds, DensityMap, Gl, Image, RadiusPipeline, exactness, reference};
+use varikernel::{CountBounds, DensityMap, Gl, Image, RadiusPipeline, maps::exactness, reference};
 
 use crate::osmesa::osmesa_is_here;
 

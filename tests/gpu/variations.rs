@@ -186,7 +186,7 @@ fn every_counting_variation_has_a_shader_of_its_own() {
     for variation in Variation::ALL {
         for settings in varied(variation, search(25, 8, Edges::Zero)) {
             let text = |settings: &Settings| {
-                varikernel::pipeline::shader_sources(TextureFormat::R32Uint, settings)
+                varikernel::radius::shader_sources(TextureFormat::R32Uint, settings)
                     .iter()
                     .map(varikernel::gl::ShaderSource::fragment)
                     .collect::<Vec<_>>()

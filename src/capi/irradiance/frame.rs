@@ -7,9 +7,9 @@ use glam::{Mat4, UVec2};
 
 use super::{Failure, Positions, Status, answer, check_place, check_size, flag, texture};
 use crate::gl::Gl;
+use crate::maps::{HostDepth, PositionMaker};
 use crate::maps::{HostSurfaces, PhotonPoints, SurfaceMaps};
-use crate::photon_point::PhotonPoint;
-use crate::position::{HostDepth, PositionMaker};
+use crate::photon::PhotonPoint;
 use crate::view::View;
 
 /// A photon in a vertex buffer of the host.

@@ -9,9 +9,9 @@ use super::{
     Context, Failure, Handle, Status, answer, check_place, check_size, destroy, flag, given, out_of_range,
     texture,
 };
-use crate::irradiance::IrradiancePipeline;
+use crate::light::IrradiancePipeline;
 use crate::maps::RadiusMap;
-use crate::position::{HostDepth, PositionMaker};
+use crate::maps::{HostDepth, PositionMaker};
 use frame::PlainIrradianceFrame;
 use settings::PlainIrradianceSettings;
 

@@ -5,8 +5,8 @@ use std::path::Path;
 use anyhow::Result;
 use serde::Serialize;
 use varikernel::Certificate;
-use varikernel::exactness::Plan;
 use varikernel::gl::{DeviceInfo, Sample};
+use varikernel::maps::exactness::Plan;
 use varikernel::measure::{Difference, RadiusSummary};
 use varikernel::settings::{Faults, Settings};
 

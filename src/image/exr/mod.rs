@@ -9,11 +9,11 @@ use exr::meta::magic_number;
 
 use super::counts::Problem;
 
-#[cfg(feature = "render")]
+#[cfg(feature = "scene")]
 pub(super) use read::read_rgb;
 pub(super) use read::{read, read_mask};
 pub(super) use write::write;
-#[cfg(feature = "render")]
+#[cfg(feature = "scene")]
 pub(super) use write::{Samples, write_channels};
 
 /// The first bytes of every EXR file.

@@ -41,7 +41,7 @@ pub(super) fn check_supported(compression: Compression) -> Result<(), Problem> {
 }
 
 /// Refuses f16 channels in B44 whose samples are wanted: the decoder overflows on some blocks.
-#[cfg(feature = "render")]
+#[cfg(feature = "scene")]
 pub(super) fn check_decodable(compression: Compression, sample_type: SampleType) -> Result<(), Problem> {
     match (compression, sample_type) {
         (Compression::B44 | Compression::B44A, SampleType::F16) => {

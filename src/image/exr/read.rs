@@ -118,7 +118,7 @@ pub(in crate::image) fn read_mask(
 }
 
 /// Reads `R`, `G` and `B` of the first layer that has them.
-#[cfg(feature = "render")]
+#[cfg(feature = "scene")]
 pub(in crate::image) fn read_rgb(
     file: impl BufRead + Seek,
     length: u64,

@@ -28,7 +28,7 @@ pub(in crate::image) fn write(
 #[derive(Clone, Debug)]
 pub(in crate::image) enum Samples<'a> {
     U32(&'a [u32]),
-    #[cfg_attr(not(feature = "render"), expect(dead_code, reason = "only pictures have such channels"))]
+    #[cfg_attr(not(feature = "scene"), expect(dead_code, reason = "only pictures have such channels"))]
     F32(Vec<f32>),
 }
 

@@ -44,7 +44,7 @@ impl Stage {
     }
 }
 
-/// The variant of frames that the [`planner`](crate::planner) chooses.
+/// The variant of frames that the [`planner`](crate::radius::planner) chooses.
 pub const AUTO: &str = "auto";
 
 /// What tells a row from all others of a run; what has no effect on a stage is absent.

@@ -19,7 +19,7 @@ mod case;
 mod compare;
 mod fast;
 mod files;
-#[cfg(feature = "render")]
+#[cfg(feature = "scene")]
 mod picture;
 mod report;
 mod rival;
@@ -33,7 +33,7 @@ mod workbench;
 pub use case::{AUTO, Case, Stage};
 pub use compare::{ComparedRun, Comparison, Verdict, compare};
 pub use fast::FastSuite;
-#[cfg(feature = "render")]
+#[cfg(feature = "scene")]
 pub use picture::{PictureReport, PictureRow, PictureSuite};
 pub use report::{Device, LeftOut, Report, Run};
 pub use runner::{Progress, empty_report, run};

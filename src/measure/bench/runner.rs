@@ -11,7 +11,7 @@ use crate::error::{Error, Result};
 use crate::gl::{Gl, TextureFormat, Timer};
 use crate::measure::Unit;
 use crate::measure::fingerprint::fingerprint;
-use crate::pipeline;
+use crate::radius;
 
 /// How far a run is.
 #[derive(Clone, Debug, PartialEq)]
@@ -85,7 +85,7 @@ pub fn empty_report(gl: &Gl, settings: &BenchSettings, maps: &[MapSource]) -> Re
 /// Of every shader that is timed.
 fn shader_hash(settings: &BenchSettings) -> String {
     let pipelines = if settings.suite.is_some() { fast::pipelines(settings) } else { settings.pipelines() };
-    let timed = pipelines.iter().flat_map(|of| pipeline::shader_sources(TextureFormat::R32Uint, of));
+    let timed = pipelines.iter().flat_map(|of| radius::shader_sources(TextureFormat::R32Uint, of));
     let sources = Unit::ALL.map(Unit::source).into_iter().chain(timed);
     fingerprint(sources.flat_map(|source| source.fragment().into_bytes()))
 }

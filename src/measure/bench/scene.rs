@@ -3,16 +3,16 @@
 use glam::UVec2;
 
 use super::situation::Situation;
-use crate::certificate::Certificate;
 use crate::error::Result;
-use crate::exactness::CountBounds;
-use crate::frame::{Changed, Frame};
 use crate::gl::Gl;
 use crate::image::Image;
+use crate::maps::CountBounds;
 use crate::maps::DensityMap;
-use crate::mask::Mask;
+use crate::maps::Mask;
+use crate::maps::{Changed, Frame};
 use crate::measure::Difference;
-use crate::pipeline::RadiusPipeline;
+use crate::radius::Certificate;
+use crate::radius::RadiusPipeline;
 use crate::reference::{self, Radii};
 use crate::settings::Search;
 use crate::synth::{self, Kind};

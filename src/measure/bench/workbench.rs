@@ -8,13 +8,13 @@ use super::scene::Scene;
 use super::settings::{BenchSettings, MapSource};
 use super::situation::Situation;
 use crate::error::{Error, Result};
-use crate::exactness::CountBounds;
 use crate::gl::{Gl, Sample, Timer};
 use crate::image::Image;
+use crate::maps::CountBounds;
 use crate::maps::DensityMap;
 use crate::measure::{Difference, Unit, UnitPass};
-use crate::pipeline::RadiusPipeline;
-use crate::planner::{self, Census, Choice};
+use crate::radius::RadiusPipeline;
+use crate::radius::planner::{self, Census, Choice};
 use crate::reference;
 use crate::settings::{Order, Search, Settings, Storage};
 

@@ -3,14 +3,14 @@
 use std::time::{Duration, Instant};
 
 use crate::error::Result;
-use crate::exactness::CountBounds;
 use crate::gl::{Gl, Timer};
 use crate::image::Image;
+use crate::maps::CountBounds;
 use crate::maps::DensityMap;
 use crate::measure::thesis::claims::usual_search;
 use crate::measure::thesis::evidence::Gain;
 use crate::measure::{Difference, Statistics};
-use crate::pipeline::RadiusPipeline;
+use crate::radius::RadiusPipeline;
 use crate::reference;
 use crate::settings::{Edges, Matching, Method, Order, SatSamples, Search, Settings, Variation};
 

@@ -13,14 +13,14 @@ use std::time::{Duration, Instant};
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
-use crate::exactness::CountBounds;
 use crate::gl::Gl;
 use crate::image::{Image, write_atomically};
+use crate::maps::CountBounds;
 use crate::maps::DensityMap;
 use crate::measure::bench::{self, Protocol};
 use crate::measure::thesis::claims::{self, Group, Judged};
 use crate::measure::thesis::evidence::{Evidence, Gain, LargerSmaller};
-use crate::pipeline::RadiusPipeline;
+use crate::radius::RadiusPipeline;
 use crate::reference;
 use crate::settings::{Method, Settings};
 

@@ -15,7 +15,7 @@
 //! neighbours', so that no core waits for another.
 //!
 //! Limit of exactness: none. Sums are modulo 2^32 of counts clamped to n (facts 1 and 2 of
-//! [`exactness`](crate::exactness)); where a box could hold 2^32 of them all the same, the definition's table of u64
+//! [`exactness`](crate::maps::exactness)); where a box could hold 2^32 of them all the same, the definition's table of u64
 //! answers, slowly.
 //!
 //! Tried and left out: the left neighbour in place of the one above takes twice the time; a second count only where the

@@ -6,12 +6,12 @@ use serde::{Deserialize, Serialize};
 use super::row::{Row, Verdict};
 use super::shape::Shape;
 use crate::error::{Error, Result};
-use crate::exactness::CountBounds;
 use crate::gl::Gl;
 use crate::image::Image;
+use crate::maps::CountBounds;
 use crate::maps::DensityMap;
 use crate::measure::fingerprint::fingerprint;
-use crate::pipeline::RadiusPipeline;
+use crate::radius::RadiusPipeline;
 use crate::reference;
 use crate::settings::{Edges, Method, Order, SatBuild, Search, Settings, Storage};
 
@@ -92,7 +92,7 @@ pub fn cases() -> Vec<Case> {
     for (map, counts) in &maps {
         for (way, settings) in &ways {
             let bounds = CountBounds::of_boxes(counts, settings.search);
-            if crate::exactness::plan(settings, counts.size(), bounds).is_ok() {
+            if crate::maps::exactness::plan(settings, counts.size(), bounds).is_ok() {
                 let name = format!("{way}/{map}");
                 cases.push(Case { name, counts: counts.clone(), settings: *settings });
             }

@@ -7,13 +7,13 @@ use super::level::{Level, levels, question};
 use super::number::Number;
 use super::row::{Decision, Row, Verdict};
 use crate::error::{Error, Result};
-use crate::exactness::{self, CountBounds};
 use crate::gl::{Gl, TextureFormat};
 use crate::image::Image;
 use crate::maps::DensityMap;
+use crate::maps::exactness::{self, CountBounds};
 use crate::measure::rivals::{Cores, Scanline};
 use crate::measure::{Difference, total_photons};
-use crate::pipeline::RadiusPipeline;
+use crate::radius::RadiusPipeline;
 use crate::settings::{Edges, Exactness, Faults, Order, Search, Settings, Storage};
 
 const SEED: u64 = 1;

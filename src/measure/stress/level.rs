@@ -96,7 +96,7 @@ pub(super) fn pruned(extent: Extent, largest: u32) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::exactness::CountBounds;
+    use crate::maps::CountBounds;
 
     #[test]
     fn questions_grow_with_the_density() {

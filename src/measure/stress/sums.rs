@@ -4,16 +4,16 @@ use glam::{UVec2, Vec3};
 
 use super::Extent;
 use super::row::{Decision, Row, Verdict};
-use crate::density::DensityStage;
 use crate::error::{Error, Result};
-use crate::gbuffer::SurfaceStage;
 use crate::gl::Gl;
+use crate::light::DensityStage;
+use crate::light::SplatStage;
 use crate::maps::{ChosenRadius, PhotonPoints, SurfaceMaps};
 use crate::measure::thesis::listings::misjudged_by_float_ratio;
 use crate::photon::PhotonPoint;
+use crate::render::surfaces::SurfaceStage;
 use crate::scene::Scene;
 use crate::settings::Kernel;
-use crate::splat::SplatStage;
 
 /// The relative error that a pixel's sum of kernels stays below, as `splat` promises.
 const SPLAT_ERROR: f64 = 1.0 / 512.0;

@@ -9,15 +9,15 @@
 use glam::UVec2;
 
 use crate::error::Result;
-use crate::exactness::{self, CountBounds};
-use crate::frame::Rectangle;
 use crate::gl::{Gl, Pass, Program, ShaderSource, StateGuard, Target, Texture, TextureFormat, glsl};
 use crate::image::Image;
 use crate::maps::DensityMap;
-use crate::pipeline::RadiusPipeline;
-use crate::radius::{GridSearch, grid_source};
+use crate::maps::Rectangle;
+use crate::maps::exactness::{self, CountBounds};
+use crate::radius::RadiusPipeline;
+use crate::radius::search::{GridSearch, grid_source};
+use crate::radius::tables::Tables;
 use crate::settings::{Search, Settings};
-use crate::structure::Structure;
 
 const HALF_DENSITY: &str = "half density";
 const INTERPOLATION: &str = "interpolated radii";
@@ -38,7 +38,7 @@ pub(super) struct Approximation {
 #[derive(Debug)]
 enum First {
     HalfDensity { program: Program, half: Target, density: Box<DensityMap>, pipeline: Box<RadiusPipeline> },
-    Grid { step: u32, settings: Settings, structure: Structure, search: Box<GridSearch> },
+    Grid { step: u32, settings: Settings, tables: Tables, search: Box<GridSearch> },
 }
 
 impl Approximation {
@@ -72,7 +72,7 @@ impl Approximation {
         let first = First::Grid {
             step,
             settings,
-            structure: Structure::new(gl, size, format, &settings)?,
+            tables: Tables::new(gl, size, format, &settings)?,
             search: Box::new(GridSearch::new(gl, size, format, &settings, step)?),
         };
         Self::new(gl, size, search, first)
@@ -98,10 +98,10 @@ impl Approximation {
                 // Its middle lies between two pixels.
                 (pipeline.render(coarse)?.as_texture(), 2, 0.5, 2.0, -0.5)
             }
-            First::Grid { step, settings, structure, search } => {
+            First::Grid { step, settings, tables, search } => {
                 let plan = exactness::plan(settings, density.size(), density.bounds())?;
-                structure.build(density, plan, Rectangle::whole(density.size()))?;
-                search.estimate(density, structure)?;
+                tables.build(density, plan, Rectangle::whole(density.size()))?;
+                search.estimate(density, tables)?;
                 #[expect(clippy::cast_precision_loss, reason = "a few pixels")]
                 let first_place = (*step / 2) as f32;
                 (search.radii(), *step, first_place, 1.0, 0.0)

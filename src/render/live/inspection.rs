@@ -4,7 +4,7 @@ use glam::UVec2;
 
 use crate::error::{Error, Result};
 use crate::image::Image;
-use crate::irradiance::IrradiancePipeline;
+use crate::light::IrradiancePipeline;
 use crate::reference::{Inside, Table};
 use crate::scene::Scene;
 use crate::settings::RadiusChoice;
@@ -58,7 +58,7 @@ impl Inspector {
             let radii = pipeline.radii().filter(|_| pipeline.density_stage().drawn() > 0);
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "counts up to 2^24")]
             let counts = pipeline.density_stage().read_counts()?.map(|count| count as u32);
-            (Table::new(&counts), radii.map(crate::RadiusMap::read).transpose()?)
+            (Table::new(&counts), radii.map(crate::maps::RadiusMap::read).transpose()?)
         };
         let (table, radii) = self.maps.insert(maps);
         let radius = match (pipeline.settings().radius, radii) {

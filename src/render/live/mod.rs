@@ -2,7 +2,7 @@
 //!
 //! Each step traces some photons, counts them, searches radii for all photons so far, and draws the new ones with these; direct
 //! light gets some more shadow rays. So a step costs the same however long the picture has been getting better. With n as it
-//! is, kernels shrink as photons come: the picture sharpens, at a noise that n decides (see [`irradiance`](crate::irradiance)).
+//! is, kernels shrink as photons come: the picture sharpens, at a noise that n decides (see [`irradiance`](crate::light::irradiance)).
 
 mod direct;
 mod inspection;
@@ -20,14 +20,14 @@ use glam::UVec2;
 use super::rgb;
 use super::sight::Sight;
 use crate::error::Result;
-use crate::gbuffer::SurfaceStage;
 use crate::gl::Gl;
 use crate::image::Image;
-use crate::irradiance::IrradiancePipeline;
+use crate::light::IrradiancePipeline;
 use crate::maps::{PhotonPoints, SurfaceMaps};
 use crate::photon::{Emission, PhotonPoint, trace};
+use crate::render::shade::ShadeStage;
+use crate::render::surfaces::SurfaceStage;
 use crate::scene::Scene;
-use crate::shade::ShadeStage;
 use direct::ProgressiveDirect;
 use inspection::Inspector;
 use through::ProgressiveThrough;
@@ -242,13 +242,13 @@ impl Live {
     /// The radii of the last step's kernels in pixels, GL_R32UI, if they are variable.
     #[must_use]
     pub fn radii(&self) -> Option<glow::Texture> {
-        self.pipeline.radii().map(crate::RadiusMap::texture)
+        self.pipeline.radii().map(crate::maps::RadiusMap::texture)
     }
 
     /// 1 where MR ended the search with too few photons, GL_R8UI, if radii are variable and the settings ask for it.
     #[must_use]
     pub fn limited(&self) -> Option<glow::Texture> {
-        self.pipeline.radii().and_then(crate::RadiusMap::limited_texture)
+        self.pipeline.radii().and_then(crate::maps::RadiusMap::limited_texture)
     }
 
     /// The picture, read back: radiance, linear RGB; waits for the GPU.

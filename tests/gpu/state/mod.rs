@@ -5,7 +5,6 @@
 mod calls;
 mod host;
 mod irradiance;
-#[cfg(feature = "render")]
 mod pictures;
 mod queries;
 mod snapshot;
@@ -111,7 +110,6 @@ fn check_restore(choice: &context::DeviceChoice) {
     let watch = Watch::new(&host, StatePolicy::Restore, textures, Some(&objects));
     calls::all(&watch);
     irradiance::all(&watch);
-    #[cfg(feature = "render")]
     pictures::all(&watch);
 }
 
@@ -121,7 +119,6 @@ fn check_defaults(choice: &context::DeviceChoice) {
     let watch = Watch::new(&host, StatePolicy::Defaults, borrowed_textures(&host), None);
     calls::all(&watch);
     irradiance::all(&watch);
-    #[cfg(feature = "render")]
     pictures::all(&watch);
 }
 

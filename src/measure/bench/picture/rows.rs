@@ -5,9 +5,9 @@ use std::time::Instant;
 use glam::UVec2;
 
 use crate::error::{Error, Result};
-use crate::exactness::CountBounds;
 use crate::gl::{Gl, Sample, Timer};
 use crate::image::Image;
+use crate::maps::CountBounds;
 use crate::maps::DensityMap;
 use crate::measure::{PointPass, Unit, UnitPass};
 use crate::photon::{Emission, Ends, PhotonPoint, TraceSettings, trace_in_batches};

@@ -4,16 +4,16 @@ use std::time::{Duration, Instant};
 
 use super::{Question, RadiusError, RadiusRow};
 use crate::error::Result;
-use crate::exactness::CountBounds;
 use crate::gl::{Gl, Timer};
 use crate::image::Image;
+use crate::maps::CountBounds;
 use crate::maps::DensityMap;
 use crate::measure::bench::{MapInfo, MapSource};
 use crate::measure::rivals::{Cores, Scanline};
 use crate::measure::study::approximation::Approximation;
 use crate::measure::study::variant::{Variant, VariantName, Way};
 use crate::measure::{Statistics, Unit, UnitPass, total_photons};
-use crate::pipeline::RadiusPipeline;
+use crate::radius::RadiusPipeline;
 use crate::settings::Search;
 
 /// A map on the device with its exact answer, and the unit of time.

@@ -1,0 +1,11 @@
+//! Photons to light: counted, then spread or gathered with the radii that the density asks for (thesis 2.6).
+
+mod density;
+mod gather;
+mod irradiance;
+mod splat;
+
+pub use density::DensityStage;
+pub use gather::GatherStage;
+pub use irradiance::{IrradiancePipeline, density_source, shader_sources, spread_sources};
+pub use splat::SplatStage;

@@ -1,0 +1,31 @@
+//! What flows between the stages, each with its unit, and which sums of it are exact.
+
+mod density;
+pub mod exactness;
+mod frame;
+mod irradiance;
+mod mask;
+mod photons;
+mod position;
+mod radius;
+mod surfaces;
+
+pub use density::DensityMap;
+pub use exactness::CountBounds;
+pub(crate) use frame::Rectangle;
+pub use frame::{Changed, Frame};
+pub use irradiance::IrradianceMap;
+pub use mask::{Mask, MaskMaker};
+pub use photons::{ChosenRadius, PhotonPoints};
+pub use position::{HostDepth, PositionMaker};
+pub use radius::RadiusMap;
+pub use surfaces::{HostSurfaces, SurfaceMaps};
+
+use glam::UVec2;
+
+use crate::gl::TextureFormat;
+
+/// Size and format for a reader.
+pub(crate) fn describe(size: UVec2, format: TextureFormat) -> String {
+    format!("{} x {} {}", size.x, size.y, format.name())
+}

@@ -1,0 +1,234 @@
+//! Which table, build and search suit a map: `--method auto`.
+//!
+//! Measured on llvmpipe at 64² to 2048² (`varikernel bench --suite fast`), in probe passes of the same size:
+//!
+//! - a table built by a scan costs less than one by doubling at every size, 3 to 6 copies against 8 to 34;
+//! - a forward search costs about 0.9 for each radius that it tries, 1.5 to 2 where all are 1;
+//! - a bracketed search costs about 2 where photons are dense, 2.7 elsewhere, and half as much again where scaled edges
+//!   are near;
+//! - a binary search costs log2 MR, and in maps of up to 128², which fit the processor's cache, three quarters or less
+//!   of that, while the bracketed search's ten draws cost more there.
+//!
+//! Brute force wins only below 128², where all radii are 1, by an eighth; pyramids never do. So the choice is one of three
+//! searches in one table. How long a forward search takes is told by the photons of each tile: in a tile with c photons in
+//! an area a, a box of radius r holds n where (2 r + 1)² c = n a, on the average.
+
+use std::fmt::Write as _;
+
+use glam::UVec2;
+
+use crate::image::Image;
+use crate::maps::exactness::{self, CountBounds};
+use crate::settings::{Edges, Order, Search, Settings};
+
+/// Pixels of the side of a census tile.
+pub const CENSUS_SIDE: u32 = 64;
+
+/// Photons in each tile of [`CENSUS_SIDE`]² pixels, tiles at the end cut to the map; more than 32 bits hold are taken as
+/// the most that they do.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Census {
+    map_size: UVec2,
+    photons: Image<u32>,
+}
+
+impl Census {
+    /// Counts the photons of a map.
+    #[must_use]
+    pub fn of(density: &Image<u32>) -> Self {
+        let map_size = density.size();
+        let photons = Image::from_fn(tiles(map_size), |x, y| {
+            let first = UVec2::new(x, y) * CENSUS_SIDE;
+            let end = (first + CENSUS_SIDE).min(map_size);
+            let sum: u64 = (first.y..end.y)
+                .flat_map(|y| (first.x..end.x).map(move |x| u64::from(density.at(x, y))))
+                .sum();
+            u32::try_from(sum).unwrap_or(u32::MAX)
+        });
+        Self { map_size, photons }
+    }
+
+    /// What was counted elsewhere: `photons` of each tile of a map of `map_size`.
+    pub(crate) fn counted(map_size: UVec2, photons: Image<u32>) -> Self {
+        debug_assert_eq!(photons.size(), tiles(map_size), "a count for each tile");
+        Self { map_size, photons }
+    }
+
+    /// The mean radius that the densities of the tiles let expect, from 1 to MR.
+    #[must_use]
+    pub fn expected_radius(&self, search: Search) -> f64 {
+        self.mean(|photons, area| {
+            let density = f64::from(photons) / area;
+            let side = (f64::from(search.min_photons) / density).sqrt();
+            // An empty tile has an infinite side.
+            ((side - 1.0) / 2.0).clamp(1.0, f64::from(search.max_radius))
+        })
+    }
+
+    /// The part of the area where n photons lie in 16 pixels or fewer, so that radii are 1 or 2.
+    #[must_use]
+    pub fn dense_share(&self, search: Search) -> f64 {
+        self.mean(|photons, area| {
+            f64::from(u8::from(16.0 * f64::from(photons) >= f64::from(search.min_photons) * area))
+        })
+    }
+
+    /// The mean over the map of a function of a tile's photons and area.
+    fn mean(&self, of_tile: impl Fn(u32, f64) -> f64) -> f64 {
+        let size = self.photons.size();
+        let (mut sum, mut total_area) = (0.0, 0.0);
+        for y in 0..size.y {
+            for x in 0..size.x {
+                let first = UVec2::new(x, y) * CENSUS_SIDE;
+                let extent = (self.map_size - first).min(UVec2::splat(CENSUS_SIDE));
+                let area = f64::from(extent.x * extent.y);
+                sum += area * of_tile(self.photons.at(x, y), area);
+                total_area += area;
+            }
+        }
+        sum / total_area
+    }
+}
+
+/// Columns and rows of the census of a map.
+pub(crate) fn tiles(map_size: UVec2) -> UVec2 {
+    (map_size + CENSUS_SIDE - 1) / CENSUS_SIDE
+}
+
+/// Settings and why they were chosen.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Choice {
+    /// The settings asked for, with method, build and order of the search filled in.
+    pub settings: Settings,
+    /// A sentence with the figures that decided.
+    pub reason: String,
+}
+
+/// The most pixels of a map that a processor's cache holds with its table.
+const SMALL: u32 = 128 * 128;
+
+/// Chooses method, build and order for a map of `map_size` with counts within `bounds`; `census` tells of the map or of
+/// one much like it, as that of the frame before.
+///
+/// The question (n, MR, edges) and all that does not decide speed stay as they are in `settings`.
+#[must_use]
+pub fn choose(settings: &Settings, map_size: UVec2, census: Option<&Census>, bounds: CountBounds) -> Choice {
+    let usual = Settings::default();
+    let in_order = |order| Settings {
+        search: Search { order, ..settings.search },
+        method: usual.method,
+        sat_build: usual.sat_build,
+        storage: usual.storage,
+        variation: None,
+        ..*settings
+    };
+    let is_exact = |order| exactness::plan(&in_order(order), map_size, bounds).is_ok();
+    let (order, reason) = match census {
+        _ if !is_exact(Order::Bracketed) && is_exact(Order::Binary) => (
+            Order::Binary,
+            "so many photons are in the map that the larger boxes of a bracketed search might not be exact"
+                .to_owned(),
+        ),
+        None => (
+            Order::Bracketed,
+            "nothing is known of the photons, and a bracketed search costs much the same for any".to_owned(),
+        ),
+        Some(census) => cheapest(settings.search, map_size, census),
+    };
+    tracing::debug!(?order, reason, "planned");
+    Choice { settings: in_order(order), reason }
+}
+
+/// The order that costs least, in probe passes, by the figures at the head of this file.
+fn cheapest(search: Search, map_size: UVec2, census: &Census) -> (Order, String) {
+    let radius = census.expected_radius(search);
+    let dense = census.dense_share(search);
+    let is_small = map_size.x.saturating_mul(map_size.y) <= SMALL;
+    let halvings = f64::from(search.max_radius.next_power_of_two().ilog2());
+    let forward = 0.6 + 0.9 * radius;
+    let binary = (0.3 + halvings) * if is_small { 0.7 } else { 1.0 };
+    // Tiles on the map's border, and the next if radii are large, may have scaled counts.
+    let tiles = tiles(map_size).as_dvec2();
+    let inner = ((tiles - 2.0).max(glam::DVec2::ZERO) / tiles).element_product();
+    let elsewhere = if search.edges == Edges::Scale { 2.7 * inner + 4.0 * (1.0 - inner) } else { 2.7 };
+    let bracketed = 1.9 * dense + elsewhere * (1.0 - dense);
+    let orders = [(Order::Forward, forward), (Order::Binary, binary), (Order::Bracketed, bracketed)];
+    let (order, _) =
+        orders.into_iter().fold(orders[2], |best, next| if next.1 < best.1 { next } else { best });
+    let mut reason = format!(
+        "radii of about {radius:.1} are expected, {:.0} % of the map is dense; in probe passes, ",
+        100.0 * dense
+    );
+    write!(reason, "forward {forward:.1}, binary {binary:.1}, bracketed {bracketed:.1}")
+        .expect("writing to a string");
+    (order, reason)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn order_of(density: &Image<u32>, max_radius: u32) -> Order {
+        let usual = Settings::default();
+        let settings = Settings { search: Search { max_radius, ..usual.search }, ..usual };
+        choose(
+            &settings,
+            density.size(),
+            Some(&Census::of(density)),
+            CountBounds::of(density, settings.search),
+        )
+        .settings
+        .search
+        .order
+    }
+
+    #[test]
+    fn a_census_counts_cut_tiles_by_their_own_area() {
+        let density = Image::from_fn(UVec2::new(65, 64), |x, _| u32::from(x == 64));
+        let census = Census::of(&density);
+        assert_eq!(census.photons.values(), [0, 64]);
+        let search = Search { min_photons: 9, max_radius: 40, ..Settings::default().search };
+        // 64 columns without a photon get MR, one with a photon in each pixel needs 9 pixels: radius 1.
+        assert!((census.expected_radius(search) - (64.0 * 40.0 + 1.0) / 65.0).abs() < 1e-12);
+        assert!((census.dense_share(search) - 1.0 / 65.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn dense_maps_go_forward_and_sparse_ones_are_bracketed() {
+        let size = UVec2::splat(256);
+        assert_eq!(order_of(&Image::filled(size, 10), 32), Order::Forward);
+        assert_eq!(
+            order_of(&Image::from_fn(size, |x, y| u32::from(x % 8 + y % 8 == 0)), 256),
+            Order::Bracketed
+        );
+        assert_eq!(order_of(&Image::filled(size, 0), 256), Order::Bracketed);
+        // Half dense, half dark.
+        assert_eq!(
+            order_of(&Image::from_fn(size, |x, _| if x < 128 { 0 } else { 20 }), 32),
+            Order::Bracketed
+        );
+        // In a small map, five boxes cost less than ten draws.
+        let thin = |x, y| u32::from(x % 8 + y % 8 == 0);
+        assert_eq!(order_of(&Image::from_fn(UVec2::splat(64), thin), 32), Order::Binary);
+        assert_eq!(order_of(&Image::filled(UVec2::new(1, 1), 1), 32), Order::Forward);
+    }
+
+    #[test]
+    fn without_a_census_the_choice_is_the_one_that_never_costs_much() {
+        let choice = choose(&Settings::thesis(), UVec2::splat(512), None, CountBounds::UNKNOWN);
+        assert_eq!(choice.settings.search.order, Order::Bracketed);
+        choice.settings.validate().expect("possible settings");
+    }
+
+    #[test]
+    fn a_map_too_full_for_brackets_is_halved() {
+        // A box of MR holds less than 2^32, one of MR + 32 more; clamped to n as well.
+        let full = Image::filled(UVec2::splat(100), 2_000_000);
+        let usual = Settings::default();
+        let search = Search { min_photons: 2_000_000, max_radius: 10, ..usual.search };
+        let bounds = CountBounds::of(&full, search);
+        let choice = choose(&Settings { search, ..usual }, full.size(), Some(&Census::of(&full)), bounds);
+        assert_eq!(choice.settings.search.order, Order::Binary, "{}", choice.reason);
+    }
+}
