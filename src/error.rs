@@ -174,11 +174,8 @@ impl Error {
 
     /// A file error; see [`Error::File`].
     #[cfg(feature = "files")]
-    pub(crate) fn file(
-        path: impl Into<PathBuf>,
-        problem: impl Into<String>,
-        remedy: impl Into<String>,
-    ) -> Self {
+    #[must_use]
+    pub fn file(path: impl Into<PathBuf>, problem: impl Into<String>, remedy: impl Into<String>) -> Self {
         Self::File { path: path.into(), problem: problem.into(), remedy: remedy.into() }
     }
 }

@@ -105,7 +105,7 @@
 
 #[cfg(feature = "capi")]
 mod capi;
-#[cfg(any(feature = "egl", feature = "osmesa"))]
+#[cfg(any(feature = "egl", feature = "osmesa", feature = "window"))]
 pub mod context;
 pub mod error;
 pub mod gl;
@@ -123,8 +123,6 @@ pub mod render;
 #[cfg(feature = "scene")]
 pub mod scene;
 pub mod settings;
-#[cfg(feature = "synth")]
-pub mod synth;
 pub mod view;
 
 pub use {glam, glow};

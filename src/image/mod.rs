@@ -12,6 +12,7 @@ mod colour_map;
 mod colours;
 #[cfg(feature = "files")]
 mod counts;
+mod difference;
 #[cfg(feature = "files")]
 mod exr;
 #[cfg(feature = "files")]
@@ -41,6 +42,7 @@ pub use colour_map::colour_of_bar;
 pub use colours::{Colours, read_colours};
 #[cfg(feature = "files")]
 pub use counts::ReadOptions;
+pub use difference::{Difference, Place};
 #[cfg(feature = "scene")]
 pub(crate) use files::open_file;
 #[cfg(feature = "files")]
@@ -59,6 +61,11 @@ pub use temporary::{Discarded, discard_unfinished_files};
 pub use tone::ToneMap;
 
 use glam::UVec2;
+
+/// The photon density map that comes with the library, as an EXR file: 2.9 million landings in a Cornell box with a glass sphere,
+/// 512 x 512 pixels (`assets/maps/README.md`).
+#[cfg(feature = "files")]
+pub const CORNELL_GLASS_EXR: &[u8] = include_bytes!("../../assets/maps/cornell_glass_512.exr");
 
 /// Values on a grid of `size.x` columns and `size.y` rows, at least one of each.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -1,41 +1,14 @@
-//! How right and how fast a result is.
+//! What measuring needs of the inside: passes that times are told in, and approximations to be held against the exact radii.
+//!
+//! None of it makes a radius map or a picture better. The package `varikernel-lab` is built on it, and hosts may compare
+//! their own times with the same units.
 
-#[cfg(feature = "bench")]
-pub mod bench;
-#[cfg(feature = "report")]
-mod chart;
-#[cfg(feature = "bench")]
-mod confidence;
-mod difference;
-#[cfg(feature = "bench")]
-mod fingerprint;
-#[cfg(feature = "scene")]
-mod picture;
+mod approximation;
 #[cfg(feature = "scene")]
 mod point_pass;
-#[cfg(feature = "report")]
-pub mod report;
-#[cfg(feature = "report")]
-pub mod reproduce;
-#[cfg(feature = "bench")]
-pub mod rivals;
-mod statistics;
-#[cfg(feature = "report")]
-pub mod stress;
-#[cfg(feature = "report")]
-pub mod study;
-mod summary;
-#[cfg(feature = "report")]
-pub mod thesis;
 mod unit_pass;
 
-#[cfg(feature = "bench")]
-pub use confidence::{CONFIDENCE_LEVEL, Confidence, RatioInterval};
-pub use difference::{Difference, Place};
-#[cfg(feature = "scene")]
-pub use picture::{LightError, PictureError};
+pub use approximation::{Approximation, STEPS, sources as approximation_sources};
 #[cfg(feature = "scene")]
 pub use point_pass::PointPass;
-pub use statistics::Statistics;
-pub use summary::{RadiusSummary, total_photons};
 pub use unit_pass::{Unit, UnitPass};

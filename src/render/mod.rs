@@ -16,13 +16,14 @@ mod shade;
 mod shadow_map;
 mod sight;
 mod stages;
-pub(crate) mod surfaces;
+mod surfaces;
 mod traced;
 
 pub use layers::{Account, Layers};
 pub use live::{Inspection, Live, LiveSettings};
 pub use reference::Reference;
 pub use stages::Stages;
+pub use surfaces::draw_surfaces;
 pub use traced::first_hits;
 
 use bytemuck::Zeroable as _;

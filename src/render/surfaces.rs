@@ -41,6 +41,15 @@ struct CubeCorner {
     number: f32,
 }
 
+/// What each pixel of the view shows, as the first stage of a picture draws it.
+///
+/// # Errors
+/// [`Error::TooLarge`](crate::Error::TooLarge); [`Error::Shader`](crate::Error::Shader);
+/// [`Error::OutOfMemory`](crate::Error::OutOfMemory).
+pub fn draw_surfaces(gl: &Gl, scene: &Scene, view: View) -> Result<SurfaceMaps> {
+    SurfaceStage::new(gl)?.draw(scene, view)
+}
+
 /// The shaders, for any scene and view.
 #[derive(Debug)]
 pub(crate) struct SurfaceStage {

@@ -51,7 +51,7 @@ impl Search {
 /// What a box holds where it reaches past the map (thesis 3.1, 4.4).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum Edges {
     /// Nothing is outside.
     Zero,
@@ -62,7 +62,7 @@ pub enum Edges {
 /// In which order radii are tried (thesis 3.5).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum Order {
     /// 1, 2, 3, ... up to the first that holds enough: as many counts as the radius is long.
     Forward,
@@ -76,7 +76,7 @@ pub enum Order {
 /// How photons in a box are counted: the thesis's solutions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum Method {
     /// Every pixel of every box (3.2, 4.1).
     BruteForce,
@@ -87,7 +87,7 @@ pub enum Method {
     /// A box cut into texels of a summed mipmap, with a fixed stack (3.3.2, 4.3).
     Pyramid,
     /// Four texels of a summed-area table (3.4, 4.2).
-    #[cfg_attr(feature = "cli", value(name = "sat"))]
+    #[cfg_attr(feature = "clap", value(name = "sat"))]
     #[cfg_attr(feature = "serde", serde(rename = "sat"))]
     SummedAreaTable,
 }
@@ -110,7 +110,7 @@ impl Method {
 /// How a pyramid's remaining area is split after a sample (thesis 4.3).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum Split {
     /// By which coordinates are odd: the first listing.
     Odd,
@@ -121,7 +121,7 @@ pub enum Split {
 /// How the pyramid finds the level of its next sample (thesis 4.3, 6.3.5).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum Matching {
     /// From the top level down until corner and extent fit, by modulo: the thesis's loop.
     Modulo,
@@ -132,7 +132,7 @@ pub enum Matching {
 /// How a summed-area table is built.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum SatBuild {
     /// By recursive doubling: each pass adds samples ever further away (3.4.1, 4.2).
     Doubling,
@@ -142,19 +142,19 @@ pub enum SatBuild {
 
 /// Samples that a doubling pass adds, s; a table of side w takes ⌈log_s w⌉ passes a direction (thesis 4.2).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum SatSamples {
     /// 2, recursive doubling as Hensley et al. give it.
-    #[cfg_attr(feature = "cli", value(name = "2"))]
+    #[cfg_attr(feature = "clap", value(name = "2"))]
     Two,
     /// 4, the thesis's faster one.
-    #[cfg_attr(feature = "cli", value(name = "4"))]
+    #[cfg_attr(feature = "clap", value(name = "4"))]
     Four,
     /// 8.
-    #[cfg_attr(feature = "cli", value(name = "8"))]
+    #[cfg_attr(feature = "clap", value(name = "8"))]
     Eight,
     /// 16.
-    #[cfg_attr(feature = "cli", value(name = "16"))]
+    #[cfg_attr(feature = "clap", value(name = "16"))]
     Sixteen,
 }
 
@@ -197,7 +197,7 @@ impl<'de> serde::Deserialize<'de> for SatSamples {
 /// The number in which sums are kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum Storage {
     /// 32-bit float, as the thesis: whole numbers up to 2^24.
     F32,
@@ -227,7 +227,7 @@ impl Storage {
 /// Bit operations in place of modulo, which 6.3.5 asks for as well, are [`Matching::Bits`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum Variation {
     /// Brute force, forward: the sum of the radius before is kept, and only the new ring is read (6.2.5).
     ReusedSums,

@@ -21,7 +21,7 @@ pub enum Estimate {
 /// How photons find what they meet first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum FirstBounce {
     /// By a ray each, on the CPU.
     Rays,
@@ -32,7 +32,7 @@ pub enum FirstBounce {
 /// How direct light finds what is in its way.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum DirectLight {
     /// By shadow rays on the CPU, to other places of the lights from each pixel.
     Traced,

@@ -1,7 +1,7 @@
 //! The two methods that do not answer the question exactly, and what can be said of their error.
 
 use glam::UVec2;
-use varikernel::measure::Difference;
+use varikernel::image::Difference;
 use varikernel::settings::{Edges, Method, Order, Search, Settings, Split, Storage};
 use varikernel::{Image, reference};
 

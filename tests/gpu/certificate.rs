@@ -4,7 +4,7 @@
 
 use glam::UVec2;
 use glow::HasContext as _;
-use varikernel::measure::Difference;
+use varikernel::image::Difference;
 use varikernel::settings::{
     Edges, Exactness, Faults, Method, Order, SatBuild, Search, Settings, Storage, Variation,
 };

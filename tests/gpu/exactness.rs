@@ -1,7 +1,7 @@
 //! What is exact past 2^24 and 2^32, what is refused, and that the limits are real.
 
 use glam::UVec2;
-use varikernel::measure::Difference;
+use varikernel::image::Difference;
 use varikernel::settings::{
     Edges, Exactness, Faults, Method, Order, SatBuild, SatSamples, Search, Settings, Storage,
 };

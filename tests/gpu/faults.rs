@@ -1,6 +1,6 @@
 //! The listings as printed: each fault on the GPU is the fault that the reference predicts.
 
-use varikernel::measure::Difference;
+use varikernel::image::Difference;
 use varikernel::settings::{Edges, Faults, Method, Order, SatBuild, SatSamples, Search, Settings, Split};
 use varikernel::{Image, reference};
 

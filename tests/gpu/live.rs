@@ -3,14 +3,13 @@
 use std::sync::Arc;
 
 use glam::{UVec2, Vec3};
-use varikernel::measure::PictureError;
 use varikernel::photon::{Emission, PhotonPoint, TraceSettings, trace};
 use varikernel::render::{Live, LiveSettings, Renderer};
 use varikernel::scene::Scene;
 use varikernel::settings::{PictureSettings, RadiusChoice};
 use varikernel::{Error, Gl, Image};
 
-use crate::support::egl;
+use crate::support::{egl, rmse};
 
 const SIDE: u32 = 32;
 
@@ -92,7 +91,7 @@ fn steps_converge_to_the_picture_of_many_photons_and_repeat_to_the_last_bit() {
     let mut renderer = Renderer::new(&gl, &scene, &many_photons, &trace, &mut |_| ()).unwrap();
     let (layers, _) = renderer.picture(&many_photons).unwrap();
     let (of_one, of_many) = (one.read().unwrap(), many.read().unwrap());
-    let error = |image| PictureError::between(image, &layers.beauty).rmse;
+    let error = |image| rmse(image, &layers.beauty);
     assert!(error(&of_many) < 0.5 * error(&of_one), "{} {}", error(&of_one), error(&of_many));
     let share = mean(&of_many) / mean(&layers.beauty);
     assert!((share - 1.0).abs() < 0.02, "{share}");

@@ -1,14 +1,13 @@
 //! Whole pictures: finite, converging, and without photons too.
 
 use glam::UVec2;
-use varikernel::measure::PictureError;
 use varikernel::photon::TraceSettings;
 use varikernel::render::{Layers, Reference, Renderer};
 use varikernel::scene::Scene;
 use varikernel::settings::{Estimate, Kernel, PictureSettings, RadiusChoice};
 
 use crate::stage::{scene, settings};
-use crate::support::egl;
+use crate::support::{egl, rmse};
 
 fn assert_finite(layers: &Layers, what: &str) {
     let colours = [
@@ -139,14 +138,13 @@ fn sixteen_times_the_photons_bring_it_nearer_to_the_reference() {
     let reference = reference.picture().unwrap().indirect;
 
     let fixed = PictureSettings { radius: RadiusChoice::Fixed(2), ..settings };
-    let noise =
-        |photons| PictureError::between(&picture(&fixed, photons, 1), &picture(&fixed, photons, 2)).rmse;
+    let noise = |photons| rmse(&picture(&fixed, photons, 1), &picture(&fixed, photons, 2));
     let ratio = noise(5_000) / noise(80_000);
     assert!((3.4..4.6).contains(&ratio), "the noise of a fixed kernel falls as the root of 16: {ratio}");
 
     let error = |photons, min_photons| {
         let settings = PictureSettings { min_photons, ..settings };
-        PictureError::between(&picture(&settings, photons, 1), &reference).rmse
+        rmse(&picture(&settings, photons, 1), &reference)
     };
     let ratio = error(5_000, 40) / error(80_000, 254);
     assert!((1.7..3.5).contains(&ratio), "about 16^(1/3) = 2.5: {ratio}");

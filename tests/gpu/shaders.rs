@@ -90,8 +90,7 @@ pub(crate) fn all_sources() -> Vec<ShaderSource> {
             }
         }
     }
-    #[cfg(feature = "report")]
-    for source in varikernel::measure::study::shader_sources() {
+    for source in varikernel::measure::approximation_sources(&Settings::default()) {
         sources.insert(source.fragment(), source);
     }
     for source in
@@ -134,7 +133,7 @@ fn every_shader_passes_glslang_validator_and_enables_no_extension() {
     }
     // What the window shows them with, which is the program's own.
     let shown = folder.path().join("show.frag");
-    let text = include_str!("../../glsl/view/show.frag");
+    let text = include_str!("../../cli/glsl/show.frag");
     std::fs::write(&shown, format!("#version 330 core\n{text}")).unwrap();
     files.push(shown);
     let validate = |files: &[std::path::PathBuf]| {

@@ -2,7 +2,7 @@
 
 use glam::UVec2;
 use varikernel::context::{self, Candidate, DeviceChoice};
-use varikernel::measure::Difference;
+use varikernel::image::Difference;
 use varikernel::settings::{
     Edges, Matching, Method, Order, SatBuild, SatSamples, Search, Settings, Split, Storage,
 };
@@ -140,4 +140,12 @@ pub(crate) fn assert_same(found: &reference::Radii, expected: &reference::Radii,
     assert!(radius.is_none(), "{context}\nfound and expected radius: {radius}");
     let limited = Difference::between(&found.limited, &expected.limited).unwrap();
     assert!(limited.is_none(), "{context}\nfound and expected limited mask: {limited}");
+}
+
+/// Root of the mean squared difference over all pixels and colours.
+pub(crate) fn rmse(a: &Image<[f32; 3]>, b: &Image<[f32; 3]>) -> f64 {
+    assert_eq!(a.size(), b.size(), "pictures of one size");
+    let pairs = a.values().as_flattened().iter().zip(b.values().as_flattened());
+    let squared: f64 = pairs.map(|(a, b)| f64::from(a - b).powi(2)).sum();
+    (squared / f64::from(3 * a.size().element_product())).sqrt()
 }

@@ -1,13 +1,11 @@
 //! The search: density map and structure in, radius map out (thesis 3.5).
 
 mod bracketed;
-#[cfg(feature = "report")]
 mod grid;
 mod mask_tiles;
 mod stepwise;
 mod unreached;
 
-#[cfg(feature = "report")]
 pub(crate) use grid::{GridSearch, source as grid_source};
 
 use std::ops::RangeInclusive;

@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use glam::UVec2;
-use varikernel::measure::PictureError;
 use varikernel::photon::{Emission, TraceSettings};
 use varikernel::render::{Live, LiveSettings, Renderer, first_hits};
 use varikernel::scene::Scene;
@@ -41,8 +40,8 @@ pub(super) fn all(watch: &Watch<'_>) {
         let untouched = std::thread::spawn(move || beauty(&crate::support::egl(), &settings, &|_| ()));
         let untouched = untouched.join().unwrap();
         let found = beauty(&watch.gl, &settings, &|call| watch.unchanged(call));
-        let error = PictureError::between(&found, &untouched);
-        assert!(error.rmse < 1e-5, "{settings:?} under the host's state: {error:?}");
+        let error = crate::support::rmse(&found, &untouched);
+        assert!(error < 1e-5, "{settings:?} under the host's state: {error:?}");
     }
     let scene = Scene::shipped("cornell-glass").unwrap();
     let trace = TraceSettings { photons: 300, ..Default::default() };

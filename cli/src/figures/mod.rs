@@ -1,0 +1,296 @@
+//! `varikernel figures`: the thesis's Figures 1.2 to 1.4 and ours, on one sheet with their errors.
+
+mod regions;
+
+use std::fs;
+use std::io::Write;
+use std::path::PathBuf;
+
+use anyhow::{Context as _, Result, bail};
+use serde::Serialize;
+use varikernel::image::{
+    Picture, Tile, check_writable, contact_sheet, picture_of, write_atomically, write_colours,
+};
+use varikernel::photon::TraceSettings;
+use varikernel::render::{Layers, Progress, Reference, Renderer};
+use varikernel::scene::Scene;
+use varikernel::settings::{MAX_PICTURE_RADIUS, PictureSettings, RadiusChoice};
+use varikernel::{Gl, Image};
+use varikernel_lab::{LightError, PictureError};
+
+use self::regions::{RegionErrors, Regions};
+use super::numbers::whole_checked_later;
+use super::photons::load;
+use super::render::{Bar, Source, in_words_of_options};
+use super::{Outcome, device, output};
+
+/// Fixed radii that are tried for the best one.
+const RADII: [u32; 12] = [1, 2, 3, 4, 5, 6, 8, 10, 12, 16, 24, 32];
+/// How much too large Figure 1.3 is.
+const TOO_LARGE: u32 = 4;
+
+/// The thesis's Figures 1.2 to 1.4 and ours, with the error of each.
+///
+/// Draws one scene with the best fixed radius (Figure 1.2), one four times as large (1.3), one pixel (1.4), and
+/// variable ones, from the same photons. Errors are those of indirect light against a reference: the photons of each pixel
+/// alone, averaged over other seeds; they are also told for the caustics alone, where the reference's indirect irradiance is
+/// more than three times its median, and for the other diffuse pixels, the walls; not if the median is 0. The folder gets figures.png, figures.json and each picture.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Args {
+    #[command(flatten)]
+    source: Source,
+
+    /// Folder to write to; made if it is missing.
+    #[arg(short, long, default_value = "figures", value_name = "FOLDER")]
+    output: PathBuf,
+
+    /// Seeds that the reference is averaged over.
+    #[arg(long, default_value_t = 32, value_name = "NUMBER", allow_negative_numbers = true)]
+    #[arg(value_parser = whole_checked_later(2..=u32::MAX))]
+    reference_seeds: u32,
+
+    /// Print one JSON object instead of a table.
+    #[arg(long)]
+    json: bool,
+}
+
+/// One picture of the sheet.
+#[derive(Serialize)]
+struct Figure {
+    name: &'static str,
+    radius: RadiusChoice,
+    error: PictureError,
+    #[serde(flatten)]
+    regions: RegionErrors,
+    energy_error: f64,
+}
+
+/// A fixed radius that was tried.
+#[derive(Serialize)]
+struct FixedRadius {
+    radius: u32,
+    error: PictureError,
+    #[serde(flatten)]
+    regions: RegionErrors,
+}
+
+/// What figures.json says.
+#[derive(Serialize)]
+struct Report {
+    version: &'static str,
+    scene: String,
+    photons: TraceSettings,
+    settings: PictureSettings,
+    renderer: String,
+    reference_seeds: u32,
+    /// How far two halves of the reference's seeds are apart, halved: its own noise. SSIM and FLIP are of the halves.
+    reference_noise: PictureError,
+    /// The same in each region.
+    reference_noise_of_regions: RegionErrors,
+    figures: Vec<Figure>,
+    /// Pixels of the caustics, and of the walls.
+    region_pixels: [usize; 2],
+    /// Every fixed radius that was tried: from 1 up to the first that is worse than the one before by both measures, in the
+    /// whole picture and on the walls.
+    fixed: Vec<FixedRadius>,
+}
+
+pub(crate) fn run(args: &Args) -> Result<Outcome> {
+    let source = &args.source;
+    if args.reference_seeds < 2 {
+        bail!(
+            "--reference-seeds {} is not possible: two halves tell the noise, give at least 2",
+            args.reference_seeds
+        );
+    }
+    fs::create_dir_all(&args.output)
+        .with_context(|| format!("can't make the folder {}", args.output.display()))?;
+    check_writable(&args.output.join("figures.png"))?;
+    source.check_exposure()?;
+    let (settings, trace) = (source.picture(), source.trace());
+    settings.validate().and_then(|()| trace.validate()).map_err(in_words_of_options)?;
+    let scene = load(&source.scene)?;
+    let gl = device::open(&source.device)?;
+
+    let bar = Bar::new();
+    let halves = references(args, &gl, &scene, &bar).map_err(in_words_of_options)?;
+    let beauty = mean(&halves[0].beauty, &halves[1].beauty);
+    // All pictures are as bright as suits the reference.
+    let tone_map = source.tone_map(&beauty);
+    let indirect = mean(&halves[0].indirect, &halves[1].indirect);
+    let [first, second] = &halves;
+    let apart = PictureError::of_light_and_sight(
+        [&first.indirect, &second.indirect],
+        [&first.beauty, &second.beauty],
+    );
+    let reference_noise =
+        PictureError { rmse: apart.rmse / 2.0, relative_mse: apart.relative_mse / 4.0, ..apart };
+
+    let renderer = Renderer::new(&gl, &scene, &settings, &trace, &mut |progress| bar.show(progress))
+        .map_err(in_words_of_options)?;
+    let regions = Regions::new(&halves[0].albedo, &mean(&halves[0].irradiance, &halves[1].irradiance));
+    let region_pixels = regions.sizes();
+    let reference_noise_of_regions = regions.noise([&first.indirect, &second.indirect]);
+    let mut studio = Studio { renderer, settings, indirect, beauty: beauty.clone(), regions };
+    let fixed = studio.fixed_radii(&bar)?;
+    let best = fixed
+        .iter()
+        .min_by(|a, b| a.error.rmse.total_cmp(&b.error.rmse))
+        .map_or_else(|| unreachable!("at least one radius was tried"), |best| best.radius);
+    let too_large = (best * TOO_LARGE).min(MAX_PICTURE_RADIUS);
+    let (mut figures, mut tiles) = (Vec::new(), Vec::new());
+    for (name, file, radius) in [
+        ("Figure 1.2, well chosen", "figure_1_2.png", RadiusChoice::Fixed(best)),
+        ("Figure 1.3, too large", "figure_1_3.png", RadiusChoice::Fixed(too_large)),
+        ("Figure 1.4, too small", "figure_1_4.png", RadiusChoice::Fixed(1)),
+        ("Variable", "variable.png", RadiusChoice::Variable),
+    ] {
+        let (layers, figure) = studio.draw(name, radius)?;
+        let picture = tone_map.apply(&layers.beauty);
+        write_colours(&args.output.join(file), &picture)?;
+        tiles.push(Tile { picture, caption: caption(&figure, settings.min_photons) });
+        if radius == RadiusChoice::Variable {
+            let colours = Picture { range: Some(1..=settings.max_radius), ..Picture::default() };
+            let caption = vec![
+                "Its radius map".to_owned(),
+                format!("1 (dark) to {} pixels (red)", settings.max_radius),
+            ];
+            tiles.push(Tile { picture: picture_of(&layers.radius, &colours), caption });
+        }
+        figures.push(figure);
+    }
+    bar.finish();
+    let caption = vec![format!("Reference, {} seeds", args.reference_seeds), errors(reference_noise)];
+    tiles.push(Tile { picture: tone_map.apply(&beauty), caption });
+    write_colours(&args.output.join("figures.png"), &contact_sheet(&tiles, 3))?;
+    let report = Report {
+        version: env!("CARGO_PKG_VERSION"),
+        scene: scene.title.clone(),
+        photons: trace,
+        settings,
+        renderer: gl.info().renderer.clone(),
+        reference_seeds: args.reference_seeds,
+        reference_noise,
+        reference_noise_of_regions,
+        figures,
+        region_pixels,
+        fixed,
+    };
+    let text = serde_json::to_string_pretty(&report)?;
+    write_atomically(&args.output.join("figures.json"), |file| Write::write_all(file, text.as_bytes()))?;
+    if args.json {
+        output::print_json(&report)?;
+    } else {
+        print(&report, args)?;
+    }
+    Ok(Outcome::Done)
+}
+
+/// Two halves of seeds that no picture uses.
+fn references(args: &Args, gl: &Gl, scene: &Scene, bar: &Bar) -> varikernel::Result<[Layers; 2]> {
+    let (settings, trace) = (args.source.picture(), args.source.trace());
+    let mut done = 0;
+    let mut half = |first: u32| {
+        let mut reference = Reference::new(gl, scene, &settings, &mut |_| ())?;
+        for seed in (first..args.reference_seeds).step_by(2) {
+            let trace = TraceSettings { seed: trace.seed.wrapping_add(1 + u64::from(seed)), ..trace };
+            reference.add_seed(scene, &trace, &mut |_| ())?;
+            done += 1;
+            bar.show(Progress {
+                stage: "reference",
+                done: f64::from(done) / f64::from(args.reference_seeds),
+            });
+        }
+        reference.picture()
+    };
+    Ok([half(0)?, half(1)?])
+}
+
+/// One set of photons, drawn with many radii.
+struct Studio {
+    renderer: Renderer,
+    settings: PictureSettings,
+    /// Of the reference.
+    indirect: Image<[f32; 3]>,
+    beauty: Image<[f32; 3]>,
+    regions: Regions,
+}
+
+impl Studio {
+    fn draw(&mut self, name: &'static str, radius: RadiusChoice) -> Result<(Layers, Figure)> {
+        let (layers, account) = self.renderer.picture(&PictureSettings { radius, ..self.settings })?;
+        let error = PictureError::of_light_and_sight(
+            [&layers.indirect, &self.indirect],
+            [&layers.beauty, &self.beauty],
+        );
+        let regions = self.regions.errors(&layers.indirect, &self.indirect);
+        Ok((layers, Figure { name, radius, error, regions, energy_error: account.energy_error() }))
+    }
+
+    /// The errors of fixed radii, as far as it makes sense.
+    fn fixed_radii(&mut self, bar: &Bar) -> Result<Vec<FixedRadius>> {
+        let mut fixed: Vec<FixedRadius> = Vec::new();
+        for radius in RADII {
+            bar.show(Progress { stage: "fixed radii", done: f64::from(radius) / 32.0 });
+            let Figure { error, regions, .. } = self.draw("", RadiusChoice::Fixed(radius))?.1;
+            let is_past = fixed.last().is_some_and(|before| {
+                let walls = regions.walls.zip(before.regions.walls);
+                let all_worse =
+                    error.rmse > before.error.rmse && error.relative_mse > before.error.relative_mse;
+                let walls_worse = |(now, before): (LightError, LightError)| {
+                    now.rmse > before.rmse && now.relative_mse > before.relative_mse
+                };
+                all_worse && walls.is_none_or(walls_worse)
+            });
+            fixed.push(FixedRadius { radius, error, regions });
+            // Wide kernels take long, and the error only grows from there on.
+            if is_past {
+                break;
+            }
+        }
+        Ok(fixed)
+    }
+}
+
+fn caption(figure: &Figure, min_photons: u32) -> Vec<String> {
+    let width = match figure.radius {
+        RadiusChoice::Fixed(radius) => format!("radius {radius}"),
+        RadiusChoice::Variable => format!("n = {min_photons}"),
+    };
+    let rmse =
+        |error: Option<LightError>| error.map_or_else(|| "-".to_owned(), |of| format!("{:.5}", of.rmse));
+    let RegionErrors { caustic, walls } = figure.regions;
+    vec![
+        format!("{}: {width}", figure.name),
+        errors(figure.error),
+        format!("caustic {} walls {}", rmse(caustic), rmse(walls)),
+    ]
+}
+
+fn errors(PictureError { rmse, relative_mse, .. }: PictureError) -> String {
+    format!("RMSE {rmse:.5} relMSE {relative_mse:.4}")
+}
+
+/// The mean of two pictures.
+fn mean(a: &Image<[f32; 3]>, b: &Image<[f32; 3]>) -> Image<[f32; 3]> {
+    let pairs = a.values().iter().zip(b.values());
+    let values = pairs.map(|(a, b)| std::array::from_fn(|colour| a[colour].midpoint(b[colour])));
+    Image::from_values(a.size(), values.collect())
+}
+
+fn print(report: &Report, args: &Args) -> Result<()> {
+    let names = ["picture", "RMSE", "rel. MSE", "SSIM", "FLIP", "caustic", "walls"];
+    let mut rows = vec![names.map(str::to_owned)];
+    let row = |name: &str, error: PictureError, RegionErrors { caustic, walls }: RegionErrors| {
+        let number = |value: f64| format!("{value:.4}");
+        let region = |error: Option<LightError>| error.map_or_else(String::new, |of| number(of.rmse));
+        let PictureError { rmse, relative_mse, ssim, flip } = error;
+        let [rmse, relative_mse, ssim, flip] = [rmse, relative_mse, ssim, flip].map(number);
+        [name.to_owned(), rmse, relative_mse, ssim, flip, region(caustic), region(walls)]
+    };
+    rows.extend(report.figures.iter().map(|figure| row(figure.name, figure.error, figure.regions)));
+    rows.extend(report.fixed.iter().map(|of| row(&format!("Radius {}", of.radius), of.error, of.regions)));
+    rows.push(row("Reference's own noise", report.reference_noise, report.reference_noise_of_regions));
+    output::print_rows(&rows)?;
+    output::print(&format!("written: {}", args.output.join("figures.png").display()))
+}

@@ -1,0 +1,68 @@
+//! What `varikernel render` answers: a table for people, or one JSON object.
+
+use std::path::Path;
+
+use anyhow::Result;
+use serde::Serialize;
+use varikernel::gl::DeviceInfo;
+use varikernel::photon::TraceSettings;
+use varikernel::render::Account;
+use varikernel::settings::{PictureSettings, RadiusChoice};
+
+use crate::output;
+
+/// The answer of `--json`.
+#[derive(Serialize)]
+pub(super) struct Report<'a> {
+    pub(super) version: &'static str,
+    pub(super) scene: &'a str,
+    pub(super) output: &'a Path,
+    pub(super) settings: PictureSettings,
+    pub(super) photons: TraceSettings,
+    pub(super) device: &'a DeviceInfo,
+    pub(super) account: Account,
+    pub(super) energy_error: f64,
+    pub(super) seconds: f64,
+}
+
+pub(super) fn print(report: &Report<'_>) -> Result<()> {
+    let Account {
+        emitted, landings, uploaded, contributing, fragments, limited_share, cut_off_share, ..
+    } = report.account;
+    #[expect(clippy::cast_precision_loss, reason = "counts are below 2^53")]
+    let share = 100.0 * contributing as f64 / (landings as f64).max(1.0);
+    let mut facts = vec![
+        ("scene", report.scene.to_owned()),
+        ("renderer", report.device.renderer.clone()),
+        ("photons", format!("{emitted} with {landings} landings, {uploaded} uploaded")),
+        ("contributing", format!("{contributing}, {share:.1} % of the landings")),
+        (
+            "fragments",
+            format!("{:.1} a contributing photon", fragments / (contributing_or_one(contributing))),
+        ),
+    ];
+    // With a fixed radius nothing is searched.
+    if report.settings.radius == RadiusChoice::Variable {
+        facts
+            .push(("limited", format!("{:.3} % of the pixels found too few photons", 100.0 * limited_share)));
+    }
+    if cut_off_share >= 0.0005 {
+        let share = 100.0 * cut_off_share;
+        let landings = report.photons.bounces;
+        facts.push((
+            "cut off",
+            format!("{share:.1} % of the power after {landings} landings; --bounces takes more"),
+        ));
+    }
+    facts.extend([
+        ("energy", format!("kept to {:.1e}", report.energy_error)),
+        ("time", format!("{:.1} s", report.seconds)),
+        ("written", report.output.display().to_string()),
+    ]);
+    output::print_facts(&facts)
+}
+
+#[expect(clippy::cast_precision_loss, reason = "counts are below 2^53")]
+fn contributing_or_one(count: u64) -> f64 {
+    count.max(1) as f64
+}

@@ -1,0 +1,111 @@
+//! The options that say what is rendered, and with how many photons.
+
+use std::path::PathBuf;
+
+use anyhow::{Result, bail};
+use glam::UVec2;
+use varikernel::context::DeviceChoice;
+use varikernel::image::ToneMap;
+use varikernel::photon::TraceSettings;
+use varikernel::settings::{Kernel, PictureSettings};
+use varikernel::{Error, Image};
+
+use crate::numbers::{fraction, whole, whole_checked_later};
+use crate::photons::parse_count;
+use crate::synth::parse_size;
+
+/// What is rendered, and with how many photons; `figures` takes the same.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Source {
+    /// A scene file, or one of: cornell-glass, cornell-boxes, cornell-empty, mirror-ring, water.
+    #[arg(default_value = "cornell-glass")]
+    pub(crate) scene: PathBuf,
+
+    /// Columns and rows.
+    #[arg(long, default_value = "512x512", value_parser = parse_size, value_name = "WIDTHxHEIGHT")]
+    pub(crate) size: UVec2,
+
+    /// Photons that leave the lights; 1e6 is a million.
+    #[arg(long, default_value = "1e6", value_parser = parse_count, value_name = "NUMBER", allow_negative_numbers = true)]
+    pub(crate) photons: u32,
+
+    /// Diffuse landings after which a photon is followed no further.
+    #[arg(long, default_value_t = 8, value_name = "NUMBER", value_parser = whole_checked_later(1..=u32::MAX))]
+    #[arg(allow_negative_numbers = true)]
+    pub(crate) bounces: u32,
+
+    /// A whole number; the same seed gives the same picture.
+    #[arg(long, default_value_t = 1, value_parser = whole(0..=u64::MAX), allow_negative_numbers = true)]
+    pub(crate) seed: u64,
+
+    /// n: photons that a kernel has to hold, at least 1.
+    #[arg(short = 'n', long, default_value_t = 400, value_name = "N", allow_negative_numbers = true)]
+    #[arg(value_parser = whole_checked_later(1..=u32::MAX))]
+    pub(crate) min_photons: u32,
+
+    /// MR: the largest radius, in pixels, 1 to 96.
+    #[arg(short = 'r', long, default_value_t = 64, value_name = "MR", allow_negative_numbers = true)]
+    #[arg(value_parser = whole_checked_later(1..=96_u32))]
+    pub(crate) max_radius: u32,
+
+    /// Falloff of a kernel from its middle to its edge.
+    #[arg(long, value_enum, default_value_t = Kernel::Silverman)]
+    pub(crate) kernel: Kernel,
+
+    /// Shadow rays for each pixel and area light; places with shadow maps on each, with --direct shadow-map.
+    #[arg(long, default_value_t = 16, value_name = "NUMBER", allow_negative_numbers = true)]
+    #[arg(value_parser = whole_checked_later(1..=u32::MAX))]
+    pub(crate) light_samples: u32,
+
+    /// Brightness of a PNG, in stops: each doubles the light [default: what suits the picture].
+    #[arg(long, value_name = "STOPS", value_parser = fraction::<f32>("-1.5"), allow_negative_numbers = true)]
+    pub(crate) exposure: Option<f32>,
+
+    /// OpenGL device: auto, egl, egl:INDEX, osmesa, or part of a renderer's name.
+    #[arg(long, default_value_t = DeviceChoice::Auto)]
+    pub(crate) device: DeviceChoice,
+}
+
+impl Source {
+    pub(crate) fn trace(&self) -> TraceSettings {
+        let (photons, bounces, seed) = (self.photons, self.bounces, self.seed);
+        TraceSettings { photons, bounces, seed, ..TraceSettings::default() }
+    }
+
+    pub(crate) fn picture(&self) -> PictureSettings {
+        PictureSettings {
+            size: self.size,
+            min_photons: self.min_photons,
+            max_radius: self.max_radius,
+            kernel: self.kernel,
+            light_samples: self.light_samples,
+            seed: self.seed,
+            ..PictureSettings::default()
+        }
+    }
+
+    /// Refuses an exposure that is no number.
+    pub(crate) fn check_exposure(&self) -> Result<()> {
+        match self.exposure {
+            Some(exposure) if !exposure.is_finite() => {
+                bail!("--exposure {exposure} is not possible: give a number of stops")
+            }
+            _ => Ok(()),
+        }
+    }
+
+    pub(crate) fn tone_map(&self, picture: &Image<[f32; 3]>) -> ToneMap {
+        let fitting = ToneMap::fitting(picture);
+        ToneMap { exposure: self.exposure.unwrap_or(fitting.exposure), ..fitting }
+    }
+}
+
+/// The words of `error` for a setting that an option gave.
+pub(crate) fn in_words_of_options(error: Error) -> anyhow::Error {
+    match error {
+        Error::Setting { name, value, reason } => {
+            anyhow::anyhow!("--{} {value} is not possible: {reason}", name.replace('_', "-"))
+        }
+        other => other.into(),
+    }
+}

@@ -1,0 +1,40 @@
+//! Timing runs: which cases, how long each, what came out, and whether two runs differ.
+//!
+//! What is timed is what thesis 5.1 times: state changes, the intermediate structure, the search; not set-up nor
+//! compilation. Every time is also told in *copies* ([`Unit::Copy`](super::Unit)), and every case's answer is checked
+//! against the definition before it is ranked.
+//!
+//! A run goes map by map. For each map it goes over all its cases several times, a *set* of samples each
+//! time, so that a machine that slows down meanwhile slows all cases alike and the copy with them. Each set
+//! starts with one untimed run. The time that is left is shared out anew before each set: slow cases get few samples,
+//! but every case gets one, as long as the budget lasts.
+//!
+//! A [suite](FastSuite) is a fixed set of maps and cases with [targets](Target) for their ratios.
+//!
+//! `PictureSuite` (with the feature `render`) times the stages of a picture instead.
+//!
+//! [Rivals](super::rivals) on the processor are cases like the others, at the stage of a whole frame.
+
+mod case;
+mod compare;
+mod fast;
+mod files;
+mod picture;
+mod report;
+mod rival;
+mod runner;
+mod scene;
+mod settings;
+mod situation;
+mod target;
+mod workbench;
+
+pub use case::{AUTO, Case, Stage};
+pub use compare::{ComparedRun, Comparison, Verdict, compare};
+pub use fast::FastSuite;
+pub use picture::{PictureReport, PictureRow, PictureSuite};
+pub use report::{Device, LeftOut, Report, Run};
+pub use runner::{Progress, empty_report, run};
+pub use settings::{BenchSettings, MapInfo, MapSource, Protocol};
+pub use situation::Situation;
+pub use target::{Side, Target};

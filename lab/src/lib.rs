@@ -1,0 +1,38 @@
+//! What measures `varikernel`: run time, error and promises about numbers, against the thesis and against rivals.
+//!
+//! It uses the library as any host does; the few passes that need its inside are its door
+//! [`varikernel::measure`].
+//!
+//! | module | what it answers |
+//! |---|---|
+//! | [`bench`] | how long does each stage of each method take, in copies? |
+//! | [`rivals`] | how long does plain code on the processor take for the same radii? |
+//! | [`study`] | how does run time trade against error, for every way to a radius map, and for pictures? |
+//! | [`stress`] | do the promises about exact numbers hold on this device? |
+//! | [`thesis`] | what did the thesis print, and does each of its claims hold? |
+//! | [`reproduce`] | both together, in one run that can be resumed |
+//! | [`report`] | the page of that run |
+//! | [`synth`] | seeded test maps |
+
+pub mod bench;
+mod chart;
+mod confidence;
+mod fingerprint;
+mod picture;
+pub mod report;
+pub mod reproduce;
+pub mod rivals;
+mod statistics;
+pub mod stress;
+pub mod study;
+mod summary;
+pub mod synth;
+pub mod thesis;
+
+pub use confidence::{CONFIDENCE_LEVEL, Confidence, RatioInterval};
+pub use picture::{LightError, PictureError};
+pub use statistics::Statistics;
+pub use summary::{RadiusSummary, total_photons};
+
+/// The commit that this was built from, where git knew.
+pub const COMMIT: &str = env!("VARIKERNEL_COMMIT");

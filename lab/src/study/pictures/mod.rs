@@ -1,0 +1,157 @@
+//! Errors of pictures: variable radii against the best fixed radius (thesis 2.5, 5.1), for the same photons and for the same
+//! time.
+//!
+//! Each scene has a reference of many photons without kernels, of other seeds. Against it stand pictures of some numbers of
+//! photons, with some n and some fixed radii, of some seeds each; all pictures of a seed are drawn from the same photons. The
+//! fixed radius is chosen knowing the answer, for each scene, number of photons and metric anew, from a sweep that goes on until
+//! the best is not at its end. So the comparison is kind to the fixed radius: in practice nobody knows it.
+//!
+//! RMSE and relative MSE are of indirect light, which is what photons bring. SSIM and FLIP are of the whole picture. The
+//! reference's own noise is in all errors, of variable and fixed radii alike, and draws their ratio towards 1.
+
+mod compare;
+mod equal_time;
+mod metric;
+mod row;
+mod run;
+mod studio;
+
+pub use compare::{Comparison, EqualPhotons, Winner, equal_photons};
+pub use equal_time::{Budget, CurvePoint, EqualTime, equal_time};
+pub use metric::{Chosen, Metric};
+pub use row::{PictureRow, Width};
+pub use run::{SceneReference, run};
+
+use serde::{Deserialize, Serialize};
+
+use varikernel::error::{Error, Result};
+use varikernel::scene::Scene;
+use varikernel::settings::{Kernel, MAX_PICTURE_RADIUS, PictureSettings};
+
+/// What is drawn and compared.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PictureStudy {
+    /// Names of shipped scenes.
+    pub scenes: Vec<String>,
+    /// Columns and rows.
+    pub size: [u32; 2],
+    /// Photons that leave the lights.
+    pub photons: Vec<u32>,
+    /// n of variable radii that are tried at least; the sweep goes on, by twos, where the best is at its end. The default of
+    /// [`PictureSettings`] is compared on its own if it is among them.
+    pub min_photons: Vec<u32>,
+    /// MR of variable radii, in pixels.
+    pub max_radius: u32,
+    /// Fixed radii in pixels, increasing: they are tried one after the other until each metric has its best and one more; the
+    /// sweep goes on where the best is at its end.
+    pub fixed: Vec<u32>,
+    /// Falloffs; variable and fixed radii are compared for each.
+    pub kernels: Vec<Kernel>,
+    /// Seeds of pictures, from 1 on: independent samples.
+    pub seeds: u32,
+    /// Seeds that the reference is the mean of, none of them a picture's; an even number.
+    pub reference_seeds: u32,
+    /// Photons of each of these.
+    pub reference_photons: u32,
+    /// Shadow rays for each area light; the reference's direct light is that of the pictures.
+    pub light_samples: u32,
+}
+
+impl PictureStudy {
+    /// All shipped scenes.
+    #[must_use]
+    pub fn usual() -> Self {
+        Self {
+            scenes: Scene::shipped_names().map(str::to_owned).collect(),
+            size: [96; 2],
+            photons: vec![6_000, 24_000, 96_000],
+            min_photons: vec![100, 200, 400],
+            max_radius: 64,
+            fixed: vec![1, 2, 3, 4, 6, 8, 11, 15, 20],
+            kernels: vec![Kernel::Silverman],
+            seeds: 3,
+            reference_seeds: 8,
+            reference_photons: 1_000_000,
+            light_samples: 4,
+        }
+    }
+
+    /// Two small scenes: shows that all works, and little more.
+    #[must_use]
+    pub fn quick() -> Self {
+        Self {
+            scenes: ["cornell-glass", "cornell-boxes"].map(str::to_owned).to_vec(),
+            size: [48; 2],
+            photons: vec![4_000, 16_000],
+            min_photons: vec![200, 400],
+            reference_seeds: 4,
+            reference_photons: 200_000,
+            ..Self::usual()
+        }
+    }
+
+    /// Checks every list and range.
+    ///
+    /// # Errors
+    /// [`Error::Setting`] with the field's name; [`Error::File`] for a scene of no such name.
+    pub fn validate(&self) -> Result<()> {
+        let refuse = |name, value: String, reason: &str| {
+            Err(Error::Setting { name, value, reason: reason.to_owned() })
+        };
+        for (name, is_empty) in [
+            ("scenes", self.scenes.is_empty()),
+            ("photons", self.photons.is_empty()),
+            ("min_photons", self.min_photons.is_empty()),
+            ("fixed", self.fixed.is_empty()),
+            ("kernels", self.kernels.is_empty()),
+        ] {
+            if is_empty {
+                return refuse(name, "nothing".to_owned(), "the study compares some; give at least one");
+            }
+        }
+        for scene in &self.scenes {
+            Scene::shipped(scene)?;
+        }
+        for &radius in &self.fixed {
+            if !(1..=MAX_PICTURE_RADIUS).contains(&radius) {
+                return refuse("fixed", radius.to_string(), "a kernel's radius goes from 1 to 96 pixels");
+            }
+        }
+        if self.photons.contains(&0) || self.reference_photons == 0 {
+            return refuse("photons", "0".to_owned(), "no photon means no light; ask for at least 1");
+        }
+        if self.seeds == 0 {
+            return refuse("seeds", "0".to_owned(), "a picture takes at least one; 3 tell how sure it is");
+        }
+        if self.reference_seeds == 0 || self.reference_seeds % 2 == 1 {
+            let reason = "two halves tell the reference's noise; give an even number";
+            return refuse("reference_seeds", self.reference_seeds.to_string(), reason);
+        }
+        self.min_photons
+            .iter()
+            .try_for_each(|&n| self.settings(Width::Variable { min_photons: n }, self.kernels[0]).validate())
+    }
+
+    /// What a picture of the study is drawn with.
+    fn settings(&self, width: Width, kernel: Kernel) -> PictureSettings {
+        let usual = PictureSettings::default();
+        PictureSettings {
+            size: self.size.into(),
+            min_photons: width.min_photons().unwrap_or(usual.min_photons),
+            max_radius: self.max_radius,
+            radius: width.choice(),
+            kernel,
+            light_samples: self.light_samples,
+            ..usual
+        }
+    }
+}
+
+/// What a study found.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Found {
+    /// What the scenes were compared with.
+    pub references: Vec<SceneReference>,
+    /// A row for each picture, in the order of scenes, photons, seeds, kernels and widths.
+    pub rows: Vec<PictureRow>,
+}

@@ -1,0 +1,241 @@
+//! The study of pictures: comparisons on rows by hand, and small runs.
+
+use varikernel::settings::Kernel;
+use varikernel_lab::PictureError;
+use varikernel_lab::study::pictures::{
+    EqualPhotons, Found, Metric, PictureRow, PictureStudy, Width, Winner, equal_photons, equal_time, run,
+};
+
+use crate::egl;
+
+const fn n(min_photons: u32) -> Width {
+    Width::Variable { min_photons }
+}
+
+const fn fixed(radius: u32) -> Width {
+    Width::Fixed { radius }
+}
+
+/// A row whose four metrics are `error` times 1, 1, 1/100 and 1/10, after half a second of photons.
+fn row(photons: u32, seed: u64, width: Width, error: f64, seconds: f64) -> PictureRow {
+    PictureRow {
+        scene: "by-hand".to_owned(),
+        photons,
+        seed,
+        kernel: Kernel::Cone,
+        width,
+        error: PictureError {
+            rmse: error,
+            relative_mse: error,
+            ssim: 1.0 - error / 100.0,
+            flip: error / 10.0,
+        },
+        mean_radius: 1.0,
+        limited_share: 0.0,
+        seconds_before: 0.5,
+        seconds_drawing: seconds - 0.5,
+    }
+}
+
+/// Rows of two seeds.
+fn rows(photons: u32, widths: &[(Width, [f64; 2], f64)]) -> Vec<PictureRow> {
+    let rows = widths.iter().flat_map(|&(width, errors, seconds)| {
+        [1, 2].into_iter().zip(errors).map(move |(seed, error)| row(photons, seed, width, error, seconds))
+    });
+    rows.collect()
+}
+
+fn close(found: f64, expected: f64) -> bool {
+    (found - expected).abs() < 1e-9 * expected.abs()
+}
+
+fn by(metric: Metric, compared: Vec<EqualPhotons>) -> EqualPhotons {
+    compared.into_iter().find(|one| one.metric == metric).unwrap()
+}
+
+#[test]
+fn equal_photons_by_hand() {
+    let mut all = rows(
+        1000,
+        &[
+            (fixed(1), [4.0, 4.0], 1.0),
+            (fixed(2), [2.0, 3.0], 1.0),
+            (fixed(3), [3.0, 4.0], 1.0),
+            (n(100), [1.0, 1.5], 1.0),
+            (n(200), [4.0, 0.5], 1.0),
+            (n(400), [3.0, 4.5], 1.0),
+        ],
+    );
+    for metric in Metric::ALL {
+        let found = by(metric, equal_photons(&all));
+        assert_eq!((found.fixed.width, found.fixed.at_end), (fixed(2), false), "{metric:?}");
+        let unit = match metric {
+            Metric::Rmse | Metric::RelativeMse => 1.0,
+            Metric::Dissimilarity => 0.01,
+            Metric::Flip => 0.1,
+        };
+        assert!(close(found.fixed.error.mean, 2.5 * unit), "{found:?}");
+        // Half of it with both seeds: sure. Nothing below 100 was tried.
+        assert_eq!((found.best.variable.width, found.best.variable.at_end), (n(100), true));
+        assert!(close(found.best.ratio.ratio, 0.5), "{found:?}");
+        assert_eq!(found.best.winner, Winner::Variable);
+        let default = found.default.unwrap();
+        assert!(default.variable.width == n(400) && close(default.ratio.ratio, 1.5), "{default:?}");
+        assert_eq!(default.winner, Winner::Fixed);
+    }
+    // A worse radius changes nothing; a better one wins, and is at the end.
+    let before = by(Metric::Rmse, equal_photons(&all));
+    all.extend(rows(1000, &[(fixed(4), [5.0, 5.0], 1.0)]));
+    assert_eq!(by(Metric::Rmse, equal_photons(&all)), before);
+    all.extend(rows(1000, &[(fixed(5), [0.5, 0.5], 1.0)]));
+    let after = by(Metric::Rmse, equal_photons(&all));
+    assert_eq!((after.fixed.width, after.fixed.at_end), (fixed(5), true));
+    // Ratios of 2 and 3: a geometric mean of √6, and two seeds are not sure.
+    assert!(close(after.best.ratio.ratio, 6.0_f64.sqrt()) && after.best.winner == Winner::Undecided);
+    assert_eq!(after.best.ratio.count, 2);
+    // Radius 1 is an end that nothing lies beyond.
+    let least = rows(7, &[(fixed(1), [1.0; 2], 1.0), (fixed(2), [2.0; 2], 1.0), (n(9), [1.0; 2], 1.0)]);
+    let least = by(Metric::Flip, equal_photons(&least));
+    assert!(least.fixed.width == fixed(1) && !least.fixed.at_end && least.default.is_none());
+    assert_eq!(least.best.winner, Winner::Undecided, "a tie");
+    assert_eq!(equal_photons(&rows(7, &[(n(9), [1.0; 2], 1.0)])), [], "nothing to compare with");
+}
+
+/// Both errors fall as one over the time; the fixed radius takes twice as long for the same error.
+#[test]
+fn equal_time_by_hand() {
+    // For either number of photons, radius 2 is the best; in the same time, radius 1 with more photons is.
+    let mut all =
+        rows(1000, &[(n(400), [8.0, 16.0], 1.0), (fixed(1), [8.0, 16.0], 2.0), (fixed(2), [6.0, 12.0], 3.0)]);
+    all.extend(rows(
+        4000,
+        &[
+            (n(100), [9.0, 9.0], 1.5),
+            (n(400), [2.0, 4.0], 4.0),
+            (fixed(1), [2.0, 4.0], 8.0),
+            (fixed(2), [1.5, 3.0], 12.0),
+        ],
+    ));
+    let compared = equal_time(&all);
+    assert_eq!(compared.len(), Metric::ALL.len());
+    let rmse = &compared[0];
+    assert_eq!((rmse.scene.as_str(), rmse.metric), ("by-hand", Metric::Rmse));
+    let places = |is_fixed: bool| {
+        let curve = if is_fixed { &rmse.fixed } else { &rmse.variable };
+        curve.iter().map(|point| (point.photons, point.width, point.seconds)).collect::<Vec<_>>()
+    };
+    assert_eq!(places(false), [(1000, n(400), 1.0), (4000, n(400), 4.0)]);
+    assert_eq!(places(true), [(1000, fixed(2), 3.0), (4000, fixed(2), 12.0)]);
+    // From 2 s, where fixed radii begin, to 4 s, where the other ends.
+    let seconds: Vec<f64> = rmse.budgets.iter().map(|budget| budget.seconds).collect();
+    assert_eq!(seconds.len(), 5);
+    assert!(
+        seconds.iter().zip(0..).all(|(&found, step)| close(found, 2.0 * 2.0_f64.powf(f64::from(step) / 4.0)))
+    );
+    for budget in &rmse.budgets {
+        // The geometric mean of the seeds' 8 / t and 16 / t.
+        let variable = 8.0 * 2.0_f64.sqrt() / budget.seconds;
+        assert!(budget.variable.0 == n(400) && close(budget.variable.1, variable), "{budget:?}");
+        assert!(budget.fixed.0 == fixed(1) && close(budget.fixed.1, 2.0 * variable), "{budget:?}");
+        assert!(close(budget.ratio.ratio, 0.5), "{budget:?}");
+    }
+    // Curves that share no time.
+    let apart = rows(1000, &[(n(400), [1.0; 2], 1.0), (fixed(2), [1.0; 2], 2.0)]);
+    assert!(equal_time(&apart).iter().all(|one| one.budgets.is_empty() && one.fixed.len() == 1));
+}
+
+fn small() -> PictureStudy {
+    PictureStudy {
+        scenes: vec!["cornell-boxes".to_owned()],
+        size: [24, 20],
+        photons: vec![1500],
+        min_photons: vec![50, 400],
+        fixed: vec![9],
+        seeds: 2,
+        reference_seeds: 2,
+        reference_photons: 60_000,
+        light_samples: 1,
+        ..PictureStudy::usual()
+    }
+}
+
+/// All but the times.
+fn without_times(rows: &[PictureRow]) -> Vec<PictureRow> {
+    let still = |row: &PictureRow| PictureRow { seconds_before: 0.0, seconds_drawing: 0.0, ..row.clone() };
+    rows.iter().map(still).collect()
+}
+
+#[test]
+fn the_same_errors_twice_and_when_gone_on_with() {
+    let (gl, study) = (egl(), small());
+    let mut seen = 0;
+    let first = run(&gl, &study, Vec::new(), &mut |rows, progress| {
+        assert!((0.0..=1.0).contains(&progress.done) && rows.len() >= seen);
+        seen = rows.len();
+        Ok(())
+    })
+    .unwrap();
+    assert_eq!(seen, first.rows.len());
+    let all_finite = |row: &PictureRow| {
+        let PictureError { rmse, relative_mse, ssim, flip } = row.error;
+        [rmse, relative_mse, ssim, flip, row.seconds()]
+            .into_iter()
+            .all(|value| value.is_finite() && value > 0.0)
+    };
+    assert!(first.rows.iter().all(all_finite));
+    assert!(first.rows[0].error != first.rows[first.rows.len() / 2].error, "seeds differ");
+
+    // Every third row is lost, and the file has been read again.
+    let text = serde_json::to_string(&first).unwrap();
+    let read: Found = serde_json::from_str(&text).unwrap();
+    assert_eq!(read, first, "to the last bit");
+    let kept: Vec<PictureRow> =
+        read.rows.into_iter().enumerate().filter(|(place, _)| place % 3 != 0).map(|(_, row)| row).collect();
+    let second = run(&gl, &study, kept.clone(), &mut |_, _| Ok(())).unwrap();
+    assert_eq!(without_times(&second.rows), without_times(&first.rows));
+    assert_eq!(second.references, first.references);
+    assert!(kept.iter().all(|row| second.rows.contains(row)), "what was there is not drawn again");
+    let errors = |result: &Found| {
+        let compared = equal_photons(&result.rows).into_iter();
+        compared.map(|one| (one.fixed, one.best.ratio, one.best.winner)).collect::<Vec<_>>()
+    };
+    assert_eq!(errors(&second), errors(&first));
+}
+
+/// A radius of 9 pixels is planted: far too much for a picture of 24. The sweep leaves it, and stops behind the best.
+#[test]
+fn a_radius_that_is_too_large_loses() {
+    let result = run(&egl(), &small(), Vec::new(), &mut |_, _| Ok(())).unwrap();
+    let compared = equal_photons(&result.rows);
+    assert_eq!(compared.len(), Metric::ALL.len());
+    for one in &compared {
+        let best = one.fixed.width.radius().unwrap();
+        assert!(!one.fixed.at_end && best < 9, "{one:?}");
+        let error = |radius| {
+            let rows = result.rows.iter().filter(|row| row.width == fixed(radius));
+            rows.map(|row| one.metric.of(&row.error)).sum::<f64>() / 2.0
+        };
+        assert!(close(error(best), one.fixed.error.mean) && error(9) > error(best), "{one:?}");
+    }
+}
+
+#[test]
+fn a_study_of_nothing_is_refused_by_name() {
+    let usual = PictureStudy::quick();
+    for (study, name) in [
+        (PictureStudy { photons: Vec::new(), ..usual.clone() }, "photons"),
+        (PictureStudy { photons: vec![5, 0], ..usual.clone() }, "photons"),
+        (PictureStudy { fixed: vec![97], ..usual.clone() }, "fixed"),
+        (PictureStudy { min_photons: vec![0], ..usual.clone() }, "min_photons"),
+        (PictureStudy { seeds: 0, ..usual.clone() }, "seeds"),
+        (PictureStudy { reference_seeds: 3, ..usual.clone() }, "reference_seeds"),
+        (PictureStudy { max_radius: 0, ..usual.clone() }, "max_radius"),
+    ] {
+        let error = study.validate().unwrap_err().to_string();
+        assert!(error.starts_with(name), "{error}");
+    }
+    let unknown = PictureStudy { scenes: vec!["no-such-scene".to_owned()], ..usual.clone() };
+    assert!(unknown.validate().unwrap_err().to_string().contains("no-such-scene"));
+    usual.validate().unwrap();
+    PictureStudy::usual().validate().unwrap();
+}
