@@ -133,7 +133,7 @@ pub use image::Image;
 pub use light::{DensityStage, GatherStage, IrradiancePipeline, SplatStage};
 pub use maps::{
     Changed, ChosenRadius, CountBounds, DensityMap, Frame, HostDepth, HostSurfaces, IrradianceMap, Mask,
-    MaskMaker, PhotonPoints, PositionMaker, RadiusMap, SurfaceMaps,
+    MaskMaker, PhotonPoints, PositionMaker, PowerMap, RadiusMap, SurfaceMaps,
 };
 pub use photon::PhotonPoint;
 pub use radius::{AdaptivePipeline, Certificate, MemoryRequired, RadiusPipeline};

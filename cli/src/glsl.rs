@@ -160,8 +160,7 @@ fn sources(args: &Args, settings: &Settings) -> Vec<ShaderSource> {
     sources.extend([PositionMaker::shader_source(), light::density_source(), MaskMaker::shader_source()]);
     sources.extend(radius::shader_sources(density, settings));
     sources.push(AdaptivePipeline::shader_source(density, settings));
-    let is_fixed = args.radius != RadiusChoice::Variable;
-    sources.extend(light::spread_sources(args.kernel, is_fixed));
+    sources.extend(light::spread_sources(args.kernel, args.radius));
     sources.extend(render::shading_sources());
     sources
 }

@@ -13,12 +13,12 @@ use glam::{UVec2, Vec4};
 
 use crate::error::{Error, Result};
 use crate::gl::{
-    Gl, Pass, Program, ShaderSource, StateGuard, Target, TargetShape, Targets, Texture, TextureFormat,
-    TextureShape, glsl,
+    Gl, Pass, Program, ShaderSource, StateGuard, Target, TargetShape, Targets, TextureFormat, TextureShape,
+    glsl,
 };
 use crate::image::Image;
 use crate::maps::CountBounds;
-use crate::maps::{DensityMap, PhotonPoints, SurfaceMaps};
+use crate::maps::{DensityMap, PhotonPoints, PowerMap, SurfaceMaps};
 
 const LABEL: &str = "density";
 
@@ -34,6 +34,7 @@ pub struct DensityStage {
     target: Target,
     /// The counts, with the number of photons drawn as their bounds.
     map: DensityMap,
+    power: PowerMap,
     /// Photons drawn, and the fullest pixel, when the counts were read last.
     read: (u64, u64),
 }
@@ -47,8 +48,8 @@ impl DensityStage {
         let _state = StateGuard::new(gl);
         let mut target = Target::of(gl, &Self::shape(size))?;
         target.clear_floats(&[Vec4::ZERO; 2]);
-        let map = DensityMap::of_stage(target.texture());
-        Ok(Self { gl: gl.clone(), program: Program::new(gl, &source())?, target, map, read: (0, 0) })
+        let (map, power) = maps(&target);
+        Ok(Self { gl: gl.clone(), program: Program::new(gl, &source())?, target, map, power, read: (0, 0) })
     }
 
     /// The counts, and the power with the count again.
@@ -62,7 +63,7 @@ impl DensityStage {
     /// Goes on with another target, without photons.
     pub(crate) fn resize(&mut self, targets: &mut Targets) {
         self.target = targets.take();
-        self.map = DensityMap::of_stage(self.target.texture());
+        (self.map, self.power) = maps(&self.target);
         self.clear();
     }
 
@@ -133,24 +134,19 @@ impl DensityStage {
         Ok(counts)
     }
 
-    /// Power of each pixel's photons, linear RGB, and their count, read back; waits for the GPU.
-    ///
-    /// # Errors
-    /// [`Error::Gl`] if the driver fails.
-    pub fn read_power(&self) -> Result<Image<[f32; 4]>> {
-        let _state = StateGuard::new(&self.gl);
-        let power = self.target.textures()[1].read(0);
-        self.gl.check("reading a power map back")?;
-        Ok(power)
-    }
-
-    /// The texture behind [`read_power`](Self::read_power).
-    pub(crate) fn power(&self) -> &Texture {
-        &self.target.textures()[1]
+    /// Power of each pixel's photons, and their count again.
+    #[must_use]
+    pub fn power(&self) -> &PowerMap {
+        &self.power
     }
 }
 
-/// The shaders that the stage compiles.
+/// What the planes of a target hold.
+fn maps(target: &Target) -> (DensityMap, PowerMap) {
+    (DensityMap::of_stage(target.texture()), PowerMap::of_stage(&target.textures()[1]))
+}
+
+/// The shader that the stage compiles.
 pub(crate) fn source() -> ShaderSource {
     ShaderSource::new(LABEL)
         .targets([TextureFormat::R32Float, TextureFormat::Rgba32Float])

@@ -7,12 +7,11 @@
 
 use glam::UVec2;
 
-use super::density::DensityStage;
-use super::splat::{self, check, read_radius};
+use super::kernel::{self, check, read_radius};
 use crate::error::Result;
-use crate::gl::{Gl, Pass, Program, ShaderSource, StateGuard, Target, TextureFormat, glsl};
-use crate::maps::{ChosenRadius, IrradianceMap, SurfaceMaps};
-use crate::settings::Kernel;
+use crate::gl::{Gl, Pass, Program, ShaderSource, StateGuard, Target, Targets, TextureFormat, glsl};
+use crate::maps::{ChosenRadius, IrradianceMap, PowerMap, SurfaceMaps};
+use crate::settings::{Estimate, IrradianceSettings, RadiusChoice};
 
 const LABEL: &str = "gather";
 
@@ -21,25 +20,36 @@ const LABEL: &str = "gather";
 pub struct GatherStage {
     gl: Gl,
     program: Program,
-    fixed: bool,
+    radius: RadiusChoice,
     irradiance: IrradianceMap,
 }
 
 impl GatherStage {
-    /// Allocates and compiles for maps of `size`, and for kernels whose radii come from a map or are `fixed`; `correct` takes
-    /// (c - 1) / c of what c photons give.
+    /// Allocates and compiles for maps of `size`, and for the kernel, the correction and the kind of radii of `settings`:
+    /// from a map, or the same everywhere, whatever that radius is.
     ///
     /// # Errors
     /// [`Error::TooLarge`](crate::Error::TooLarge); [`Error::Shader`](crate::Error::Shader) if the driver refuses the shader;
     /// [`Error::Gl`](crate::Error::Gl) when memory runs out.
-    pub fn new(gl: &Gl, size: UVec2, kernel: Kernel, fixed: bool, correct: bool) -> Result<Self> {
+    pub fn new(gl: &Gl, size: UVec2, settings: &IrradianceSettings) -> Result<Self> {
         let _state = StateGuard::new(gl);
-        let program = Program::new(gl, &source(kernel, fixed, correct))?;
+        let program = Program::new(gl, &source(settings))?;
         let irradiance = IrradianceMap::of(Target::of(gl, &IrradianceMap::shape(size))?);
-        Ok(Self { gl: gl.clone(), program, fixed, irradiance })
+        Ok(Self { gl: gl.clone(), program, radius: settings.radius, irradiance })
     }
 
-    /// Gathers at every pixel from the power of each pixel's photons and their count, as `density` added them up.
+    /// Goes on with another target.
+    pub(super) fn resize(&mut self, targets: &mut Targets) {
+        self.irradiance = IrradianceMap::of(targets.take());
+    }
+
+    /// What was gathered last.
+    #[must_use]
+    pub fn irradiance(&self) -> &IrradianceMap {
+        &self.irradiance
+    }
+
+    /// Gathers at every pixel from the power of each pixel's photons and their count.
     ///
     /// # Errors
     /// [`Error::Mismatch`](crate::Error::Mismatch) if a map has another size, or the radius is fixed and the stage's is not, or
@@ -47,24 +57,26 @@ impl GatherStage {
     pub fn gather(
         &mut self,
         surfaces: &SurfaceMaps,
-        density: &DensityStage,
+        power: &PowerMap,
         radius: ChosenRadius<'_>,
     ) -> Result<&IrradianceMap> {
-        check(surfaces, self.irradiance.size(), radius, self.fixed)?;
-        surfaces.check_size(density.map().size())?;
+        check(surfaces, self.irradiance.size(), radius, self.radius)?;
+        surfaces.check_size(power.size())?;
         let _state = StateGuard::new(&self.gl);
-        let pass = surfaces.read_by(Pass::new(LABEL, &self.program)).read("power", density.power());
+        let pass = surfaces.read_by(Pass::new(LABEL, &self.program)).read("power", power.as_texture());
         read_radius(pass, radius).set("camera", surfaces.view().position()).fill(self.irradiance.target())?;
         self.gl.check("gathering photons")?;
         Ok(&self.irradiance)
     }
 }
 
-pub(crate) fn source(kernel: Kernel, fixed: bool, correct: bool) -> ShaderSource {
-    splat::source(LABEL, kernel, fixed)
-        .variant_if(correct, "count-correction")
+/// The shader of these settings.
+pub(super) fn source(settings: &IrradianceSettings) -> ShaderSource {
+    let corrects = settings.estimate == Estimate::Gather { count_correction: true };
+    kernel::source(LABEL, settings)
+        .variant_if(corrects, "count-correction")
         .targets([TextureFormat::Rgba32Float])
-        .define_if(correct, "COUNT_CORRECTION")
+        .define_if(corrects, "COUNT_CORRECTION")
         .file(glsl!("common/surfaces.glsl"))
         .file(glsl!("common/kernel.glsl"))
         .file(glsl!("common/chosen_radius.glsl"))

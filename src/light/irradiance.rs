@@ -1,4 +1,5 @@
-//! Photons and a g-buffer in, irradiance out: density, radii and splat in order (thesis 2.6).
+//! Photons and a g-buffer in, irradiance out: density, radii and kernels in order (thesis 2.6). Hosts, pictures, the window,
+//! the C interface and benchmarks all come through here.
 //!
 //! Photons may come all at once, or part after part, each with the power of all lights: the sum of k parts is then k times
 //! the light. Each part is drawn with the radii of all photons so far, so that these shrink as photons come, and the mean
@@ -9,27 +10,31 @@
 use glam::UVec2;
 
 use super::density::{self, DensityStage};
-use super::gather;
-use super::splat::{self, SplatStage};
+use super::spread::Spreads;
+use super::{gather, splat};
 use crate::error::Result;
 use crate::gl::{Gl, ShaderSource, StateGuard, Targets, TextureFormat, bytes_of};
-use crate::maps::Frame;
-use crate::maps::{ChosenRadius, DensityMap, IrradianceMap, PhotonPoints, RadiusMap, SurfaceMaps};
+use crate::maps::{
+    ChosenRadius, DensityMap, Frame, IrradianceMap, PhotonPoints, PowerMap, RadiusMap, SurfaceMaps,
+};
 use crate::radius::{RadiusPipeline, check_fits};
-use crate::settings::{IrradianceSettings, Kernel, RadiusChoice};
+use crate::settings::{Estimate, IrradianceSettings, Kernel, RadiusChoice, Settings};
 
-/// Photons and surfaces in, irradiance out, for one size and one set of settings.
+/// Photons and surfaces in, irradiance out, for one size.
 ///
-/// Everything is allocated and compiled by [`new`](Self::new); each call puts back the OpenGL state that it touches, also when
-/// it fails. The stages are usable apart: [`DensityStage`], [`RadiusPipeline`], [`SplatStage`].
+/// Everything is allocated and compiled by [`new`](Self::new), and by [`change`](Self::change) what other settings need; each
+/// call puts back the OpenGL state that it touches, also when it fails. [`render`](Self::render) and [`add`](Self::add) do all
+/// of it; [`count`](Self::count), [`search`](Self::search) and [`spread`](Self::spread) are its stages one by one.
 #[derive(Debug)]
 pub struct IrradiancePipeline {
     gl: Gl,
     settings: IrradianceSettings,
     density: DensityStage,
-    /// For variable radii.
+    /// For variable radii; kept while they are fixed.
     radii: Option<RadiusPipeline>,
-    splat: SplatStage,
+    /// Whether the radii are those of all photons counted.
+    searched: bool,
+    spreads: Spreads,
 }
 
 impl IrradiancePipeline {
@@ -42,14 +47,16 @@ impl IrradiancePipeline {
     pub fn new(gl: &Gl, size: UVec2, settings: IrradianceSettings) -> Result<Self> {
         settings.validate()?;
         check_fits(gl.info(), size)?;
-        let fixed = matches!(settings.radius, RadiusChoice::Fixed(_));
-        let radii = || RadiusPipeline::new(gl, size, TextureFormat::R32Float, settings.search);
         Ok(Self {
             gl: gl.clone(),
             settings,
             density: DensityStage::new(gl, size)?,
-            radii: if fixed { None } else { Some(radii()?) },
-            splat: SplatStage::new(gl, size, settings.kernel, fixed)?,
+            radii: match settings.radius {
+                RadiusChoice::Fixed(_) => None,
+                RadiusChoice::Variable => Some(radius_pipeline(gl, size, settings.radii)?),
+            },
+            searched: false,
+            spreads: Spreads::new(gl, size, &settings)?,
         })
     }
 
@@ -61,9 +68,9 @@ impl IrradiancePipeline {
     pub fn memory_required(size: UVec2, settings: &IrradianceSettings) -> Result<u64> {
         settings.validate()?;
         // Refuses an empty size as well.
-        let radii = RadiusPipeline::memory_required(size, &settings.search)?.at_creation;
+        let radii = RadiusPipeline::memory_required(size, &settings.radii)?.at_creation;
         let radii = if settings.radius == RadiusChoice::Variable { radii } else { 0 };
-        Ok(radii + bytes_of(&[DensityStage::shape(size)]) + SplatStage::bytes(size))
+        Ok(radii + bytes_of(&[DensityStage::shape(size)]) + Spreads::bytes(size, settings))
     }
 
     /// From now on for surfaces of `size`, without photons: programs stay, textures are made anew. The same size is free, and
@@ -72,13 +79,13 @@ impl IrradiancePipeline {
     /// # Errors
     /// Those of [`RadiusPipeline::resize`]; but for a lost context, the pipeline then goes on at its old size, with what it held.
     pub fn resize(&mut self, size: UVec2) -> Result<()> {
-        if size == self.density.map().size() {
+        if size == self.size() {
             return self.gl.current().map(drop);
         }
         check_fits(self.gl.info(), size)?;
         let state = StateGuard::new(&self.gl);
         let mut shapes = vec![DensityStage::shape(size)];
-        shapes.extend(SplatStage::shapes(size));
+        shapes.extend(self.spreads.shapes(size));
         let mut targets = Targets::new(&self.gl, &shapes)?;
         self.gl.check("resizing an irradiance pipeline")?;
         drop(state);
@@ -86,8 +93,35 @@ impl IrradiancePipeline {
             radii.resize(size)?;
         }
         self.density.resize(&mut targets);
-        self.splat.resize(&mut targets);
+        self.spreads.resize(&mut targets);
         targets.finish();
+        self.searched = false;
+        Ok(())
+    }
+
+    /// Goes on with other settings and the photons that were counted; their light has to be [`spread`](Self::spread) anew.
+    ///
+    /// What was compiled stays for later: a search of the same question, and the last kernel of a splat and of a gather, of
+    /// variable and of fixed radii. So it takes more memory than a new pipeline.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new); the settings are those of before then.
+    pub fn change(&mut self, settings: IrradianceSettings) -> Result<()> {
+        settings.validate()?;
+        let size = self.size();
+        let is_known = |pipeline: &RadiusPipeline| *pipeline.settings() == settings.radii;
+        let wants_radii = settings.radius == RadiusChoice::Variable;
+        let searches = if wants_radii && !self.radii.as_ref().is_some_and(is_known) {
+            Some(radius_pipeline(&self.gl, size, settings.radii)?)
+        } else {
+            None
+        };
+        self.spreads.change(&self.gl, size, &settings)?;
+        if searches.is_some() {
+            self.radii = searches;
+            self.searched = false;
+        }
+        self.settings = settings;
         Ok(())
     }
 
@@ -107,19 +141,76 @@ impl IrradiancePipeline {
     /// [`Error::Inexact`](crate::Error::Inexact) where a pixel has more photons than can be counted, see
     /// [`DensityStage::add`], and as [`RadiusPipeline::render`]; [`Error::Gl`](crate::Error::Gl) if the driver fails.
     pub fn add(&mut self, surfaces: &SurfaceMaps, photons: &PhotonPoints) -> Result<&IrradianceMap> {
-        let density = self.density.add(surfaces, photons)?;
-        let radius = match (&mut self.radii, self.settings.radius) {
-            (Some(radii), _) => ChosenRadius::Map(radii.update(&Frame::new(density))?),
-            (None, RadiusChoice::Fixed(radius)) => ChosenRadius::Fixed(radius),
-            (None, RadiusChoice::Variable) => unreachable!("made with a search"),
+        self.count(surfaces, photons)?;
+        self.spread(surfaces, photons)
+    }
+
+    /// Counts photons in, beside those that are there.
+    ///
+    /// # Errors
+    /// As [`DensityStage::add`].
+    pub fn count(&mut self, surfaces: &SurfaceMaps, photons: &PhotonPoints) -> Result<&DensityMap> {
+        self.searched = false;
+        self.density.add(surfaces, photons)
+    }
+
+    /// Finds the radii of all photons so far; none if radii are fixed.
+    ///
+    /// # Errors
+    /// As [`RadiusPipeline::update`].
+    pub fn search(&mut self) -> Result<Option<&RadiusMap>> {
+        let Some(radii) = self.radii.as_mut().filter(|_| !self.settings.radius.is_fixed()) else {
+            return Ok(None);
         };
-        self.splat.add(surfaces, photons, radius)
+        self.searched = false;
+        let radii = radii.update(&Frame::new(self.density.map()))?;
+        self.searched = true;
+        Ok(Some(radii))
+    }
+
+    /// Spreads these photons, which were counted before, with the radii of all photons so far, and adds their light to what
+    /// is there; a gather finds the light of all photons instead. Radii are searched if they were not since photons came.
+    ///
+    /// # Errors
+    /// As [`add`](Self::add).
+    pub fn spread(&mut self, surfaces: &SurfaceMaps, photons: &PhotonPoints) -> Result<&IrradianceMap> {
+        if !self.searched {
+            self.search()?;
+        }
+        let radius = match (self.settings.radius, &self.radii) {
+            (RadiusChoice::Fixed(radius), _) => ChosenRadius::Fixed(radius),
+            (RadiusChoice::Variable, Some(radii)) => ChosenRadius::Map(radii.radii()),
+            (RadiusChoice::Variable, None) => unreachable!("made with a search"),
+        };
+        self.spreads.add(surfaces, photons, self.density.power(), radius)
     }
 
     /// Forgets all photons and their light: when the camera or what it sees has moved.
     pub fn clear(&mut self) {
+        self.clear_photons();
+        self.clear_light();
+    }
+
+    /// Forgets the photons that were counted.
+    pub fn clear_photons(&mut self) {
         self.density.clear();
-        self.splat.clear();
+        self.searched = false;
+    }
+
+    /// Forgets the light, and keeps the photons that were counted.
+    pub fn clear_light(&mut self) {
+        self.spreads.clear();
+    }
+
+    /// Searches radii again for the next light, though they are known.
+    pub fn clear_radii(&mut self) {
+        self.searched = false;
+    }
+
+    /// Columns and rows.
+    #[must_use]
+    pub fn size(&self) -> UVec2 {
+        self.density.map().size()
     }
 
     /// Photons of each pixel.
@@ -128,16 +219,23 @@ impl IrradiancePipeline {
         self.density.map()
     }
 
+    /// Power of each pixel's photons.
+    #[must_use]
+    pub fn power(&self) -> &PowerMap {
+        self.density.power()
+    }
+
     /// The radii of the last photons' kernels, if they are variable; undefined before the first.
     #[must_use]
     pub fn radii(&self) -> Option<&RadiusMap> {
-        self.radii.as_ref().map(RadiusPipeline::radii)
+        let radii = self.radii.as_ref().filter(|_| !self.settings.radius.is_fixed());
+        radii.map(RadiusPipeline::radii)
     }
 
     /// The light so far.
     #[must_use]
     pub fn irradiance(&self) -> &IrradianceMap {
-        self.splat.irradiance()
+        self.spreads.irradiance()
     }
 
     /// The stage that counts photons.
@@ -146,18 +244,23 @@ impl IrradiancePipeline {
         &self.density
     }
 
-    /// The settings that the pipeline was made with.
+    /// The settings of the next photons.
     #[must_use]
     pub fn settings(&self) -> &IrradianceSettings {
         &self.settings
     }
 }
 
+fn radius_pipeline(gl: &Gl, size: UVec2, settings: Settings) -> Result<RadiusPipeline> {
+    RadiusPipeline::new(gl, size, TextureFormat::R32Float, settings)
+}
+
 /// Every shader that photons become irradiance by, beside those of the radius map: density, splats and gathers of all kernels.
 #[must_use]
 pub fn shader_sources() -> Vec<ShaderSource> {
-    let kernels = Kernel::ALL.into_iter().flat_map(|kernel| [(kernel, false), (kernel, true)]);
-    let spreads = kernels.flat_map(|(kernel, fixed)| spread_sources(kernel, fixed));
+    let radii = [RadiusChoice::Variable, RadiusChoice::Fixed(1)];
+    let kernels = Kernel::ALL.into_iter().flat_map(|kernel| radii.map(|radius| (kernel, radius)));
+    let spreads = kernels.flat_map(|(kernel, radius)| spread_sources(kernel, radius));
     std::iter::once(density_source()).chain(spreads).collect()
 }
 
@@ -167,9 +270,12 @@ pub fn density_source() -> ShaderSource {
     density::source()
 }
 
-/// The shaders of splats and gathers by one kernel, whose radii are variable or fixed.
+/// The shaders of splats and gathers by one kernel, for variable radii, or fixed ones of any width.
 #[must_use]
-pub fn spread_sources(kernel: Kernel, fixed: bool) -> Vec<ShaderSource> {
-    let gathers = [false, true].map(|correct| gather::source(kernel, fixed, correct));
-    splat::sources(kernel, fixed).into_iter().chain(gathers).collect()
+pub fn spread_sources(kernel: Kernel, radius: RadiusChoice) -> Vec<ShaderSource> {
+    let usual = IrradianceSettings { radius, kernel, ..IrradianceSettings::default() };
+    let gather = |count_correction| {
+        gather::source(&IrradianceSettings { estimate: Estimate::Gather { count_correction }, ..usual })
+    };
+    splat::sources(&usual).into_iter().chain([gather(false), gather(true)]).collect()
 }

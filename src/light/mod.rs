@@ -3,7 +3,9 @@
 mod density;
 mod gather;
 mod irradiance;
+mod kernel;
 mod splat;
+mod spread;
 
 pub use density::DensityStage;
 pub use gather::GatherStage;

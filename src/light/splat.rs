@@ -19,13 +19,14 @@
 
 use glam::{UVec2, Vec4};
 
-use crate::error::{Error, Result};
+use super::kernel::{check, read_radius, source};
+use crate::error::Result;
 use crate::gl::{
     Gl, Pass, Program, ShaderSource, StateGuard, Target, TargetShape, Targets, TextureFormat, TextureShape,
     bytes_of, glsl,
 };
 use crate::maps::{ChosenRadius, IrradianceMap, PhotonPoints, SurfaceMaps};
-use crate::settings::Kernel;
+use crate::settings::{IrradianceSettings, RadiusChoice};
 
 const COVERED: &str = "splat covered";
 const SPREAD: &str = "splat spread";
@@ -34,9 +35,6 @@ const ADDITION: &str = "splat addition";
 /// Columns of the table of covered areas.
 const TABLE_SIDE: u32 = 1 << 8;
 
-/// How far a kernel may reach, in pixels: a square of that is what llvmpipe's loops finish (65,535 turns).
-const MAX_REACH: u32 = 126;
-
 /// Draws photons with one kernel into maps of one size.
 #[derive(Debug)]
 pub struct SplatStage {
@@ -44,8 +42,8 @@ pub struct SplatStage {
     covered: Program,
     spread: Program,
     addition: Program,
-    /// Whether all radii are the same.
-    fixed: bool,
+    /// Of which kind its radii are.
+    radius: RadiusChoice,
     /// The covered area of each photon of a chunk.
     table: Target,
     /// What the chunk's kernels add up to, before it is added to all.
@@ -54,13 +52,14 @@ pub struct SplatStage {
 }
 
 impl SplatStage {
-    /// Allocates and compiles for maps of `size`, still dark, and for kernels whose radii come from a map or are `fixed`.
+    /// Allocates and compiles for maps of `size`, still dark, and for the kernel and the kind of radii of `settings`:
+    /// from a map, or the same everywhere, whatever that radius is.
     ///
     /// # Errors
-    /// [`Error::TooLarge`]; [`Error::Shader`] if the driver refuses a shader; [`Error::Gl`] when memory runs out.
-    pub fn new(gl: &Gl, size: UVec2, kernel: Kernel, fixed: bool) -> Result<Self> {
+    /// [`Error::TooLarge`](crate::Error::TooLarge); [`Error::Shader`](crate::Error::Shader) if the driver refuses a shader; [`Error::Gl`](crate::Error::Gl) when memory runs out.
+    pub fn new(gl: &Gl, size: UVec2, settings: &IrradianceSettings) -> Result<Self> {
         let _state = StateGuard::new(gl);
-        let [covered, spread, addition] = sources(kernel, fixed);
+        let [covered, spread, addition] = sources(settings);
         let mut targets = Targets::new(gl, &Self::shapes(size))?;
         let of_chunk = targets.take();
         let mut irradiance = IrradianceMap::of(targets.take());
@@ -70,7 +69,7 @@ impl SplatStage {
             covered: Program::new(gl, &covered)?,
             spread: Program::new(gl, &spread)?,
             addition: Program::new(gl, &addition)?,
-            fixed,
+            radius: settings.radius,
             table: Target::of(gl, &vec![table()])?,
             of_chunk,
             irradiance,
@@ -117,15 +116,15 @@ impl SplatStage {
     /// Spreads photons and adds them to the light that is there.
     ///
     /// # Errors
-    /// [`Error::Mismatch`] if surfaces or radii have another size, or the radius is fixed and the stage's is not, or the other
-    /// way round; [`Error::Gl`] if the driver fails.
+    /// [`Error::Mismatch`](crate::Error::Mismatch) if surfaces or radii have another size, or the radius is fixed and the stage's is not, or the other
+    /// way round; [`Error::Gl`](crate::Error::Gl) if the driver fails.
     pub fn add(
         &mut self,
         surfaces: &SurfaceMaps,
         photons: &PhotonPoints,
         radius: ChosenRadius<'_>,
     ) -> Result<&IrradianceMap> {
-        check(surfaces, self.irradiance.size(), radius, self.fixed)?;
+        check(surfaces, self.irradiance.size(), radius, self.radius)?;
         let _state = StateGuard::new(&self.gl);
         let camera = surfaces.view().position();
         for chunk in photons.chunks() {
@@ -159,40 +158,6 @@ fn table() -> TextureShape {
     TextureShape::new(COVERED, TextureFormat::R32Float, UVec2::splat(TABLE_SIDE))
 }
 
-/// Checks what kernels are drawn with.
-pub(super) fn check(
-    surfaces: &SurfaceMaps,
-    size: UVec2,
-    radius: ChosenRadius<'_>,
-    fixed: bool,
-) -> Result<()> {
-    surfaces.check_size(size)?;
-    let what = "radius of the kernels";
-    match radius {
-        _ if radius.is_fixed() != fixed => {
-            let in_words = |fixed: bool| if fixed { "a fixed one" } else { "a radius map" }.to_owned();
-            Err(Error::Mismatch { what, expected: in_words(fixed), got: in_words(!fixed) })
-        }
-        ChosenRadius::Map(map) if map.size() != size => Err(Error::size(what, size, map.size())),
-        _ => Ok(()),
-    }
-}
-
-/// Gives a pass what `common/chosen_radius.glsl` reads.
-pub(super) fn read_radius<'a>(pass: Pass<'a>, radius: ChosenRadius<'a>) -> Pass<'a> {
-    match radius {
-        ChosenRadius::Map(map) => pass.read("radii", map.as_texture()),
-        ChosenRadius::Fixed(radius) => pass.set("fixed_radius", radius),
-    }
-}
-
-pub(super) fn source(label: &str, kernel: Kernel, fixed: bool) -> ShaderSource {
-    ShaderSource::new(label)
-        .define(kernel.define(), 1_u32)
-        .define("MAX_REACH", MAX_REACH)
-        .define_if(fixed, "FIXED_RADIUS")
-}
-
 fn with_photon_kernel(source: ShaderSource) -> ShaderSource {
     source
         .vertex_file(glsl!("common/surfaces.glsl"))
@@ -203,13 +168,13 @@ fn with_photon_kernel(source: ShaderSource) -> ShaderSource {
 }
 
 /// The shaders of a splat.
-pub(crate) fn sources(kernel: Kernel, fixed: bool) -> [ShaderSource; 3] {
+pub(super) fn sources(settings: &IrradianceSettings) -> [ShaderSource; 3] {
     [
-        with_photon_kernel(source(COVERED, kernel, fixed))
+        with_photon_kernel(source(COVERED, settings))
             .targets([TextureFormat::R32Float])
             .vertex_file(glsl!("splat/covered.vert"))
             .file(glsl!("splat/covered.frag")),
-        with_photon_kernel(source(SPREAD, kernel, fixed))
+        with_photon_kernel(source(SPREAD, settings))
             .targets([TextureFormat::Rgba32Float])
             .vertex_file(glsl!("splat/spread.vert"))
             .file(glsl!("common/surfaces.glsl"))

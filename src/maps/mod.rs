@@ -7,6 +7,7 @@ mod irradiance;
 mod mask;
 mod photons;
 mod position;
+mod power;
 mod radius;
 mod surfaces;
 
@@ -18,6 +19,7 @@ pub use irradiance::IrradianceMap;
 pub use mask::{Mask, MaskMaker};
 pub use photons::{ChosenRadius, PhotonPoints};
 pub use position::{HostDepth, PositionMaker};
+pub use power::PowerMap;
 pub use radius::RadiusMap;
 pub use surfaces::{HostSurfaces, SurfaceMaps};
 

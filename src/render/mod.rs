@@ -3,6 +3,7 @@
 //! Surfaces, density, radii, splats and shading are passes on OpenGL; photons and what is seen in mirrors and through glass are
 //! rays on the CPU. Direct light and what photons meet first are either: shadow rays or shadow maps, rays or bounce maps.
 
+mod account;
 mod bounce_map;
 mod cube_map;
 mod direct;
@@ -19,28 +20,24 @@ mod stages;
 mod surfaces;
 mod traced;
 
-pub use layers::{Account, Layers};
+pub use account::Account;
+pub use layers::Layers;
 pub use live::{Inspection, Live, LiveSettings};
 pub use reference::Reference;
-pub use stages::Stages;
 pub use surfaces::draw_surfaces;
 pub use traced::first_hits;
 
 use bytemuck::Zeroable as _;
-use glam::{DVec3, UVec2, Vec3};
+use glam::{DVec3, Vec3};
 
 use crate::error::Result;
-use crate::gl::{Gl, ShaderSource, TextureFormat};
+use crate::gl::{Gl, ShaderSource};
 use crate::image::Image;
-use crate::light::DensityStage;
-use crate::light::{self, GatherStage, SplatStage};
-use crate::maps::{Changed, Frame};
-use crate::maps::{ChosenRadius, PhotonPoints, SurfaceMaps};
+use crate::light::{self, IrradiancePipeline};
+use crate::maps::{PhotonPoints, SurfaceMaps};
 use crate::photon::{Emission, PhotonPoint, TraceSettings};
-use crate::radius::RadiusPipeline;
 use crate::scene::Scene;
-use crate::settings::{Estimate, Kernel, PictureSettings, RadiusChoice, Search, Settings};
-use crate::view::View;
+use crate::settings::{PictureSettings, RadiusChoice};
 use nearest::PhotonGrid;
 use prepared::Prepared;
 use seen_through::{Wanted, seen_through};
@@ -61,18 +58,11 @@ pub struct Progress {
 #[derive(Debug)]
 pub struct Renderer {
     gl: Gl,
-    size: UVec2,
     surfaces: SurfaceMaps,
-    density: DensityStage,
     light: TracedLight,
     bent: Vec<Place>,
     traced: Traced,
-    /// Made for the first picture, and anew for one with another n or MR.
-    radii: Option<RadiusPipeline>,
-    /// Whether its radii are to be searched again although they are there.
-    searches_again: bool,
-    /// Of the kernel that was drawn last, for radii from a map and for fixed ones.
-    splats: [Option<(Kernel, SplatStage)>; 2],
+    pipeline: IrradiancePipeline,
     shade: ShadeStage,
 }
 
@@ -92,18 +82,12 @@ impl Renderer {
     ) -> Result<Self> {
         settings.validate()?;
         // What can be refused is refused before anything is traced.
-        Emission::new(scene, trace)?;
+        let emission = Emission::new(scene, trace)?;
         let prepared = Prepared::new(gl, scene, settings, progress)?;
-        let traced = Traced::new(
-            gl,
-            scene,
-            prepared.surfaces.view(),
-            trace,
-            !prepared.bent.is_empty(),
-            settings.first_bounce,
-            progress,
-        )?;
-        Self::assemble(gl, prepared, traced)
+        let needs_grid = !prepared.bent.is_empty();
+        let view = prepared.surfaces.view();
+        let traced = Traced::new(gl, scene, view, &emission, needs_grid, settings.first_bounce, progress)?;
+        Self::assemble(gl, prepared, traced, settings)
     }
 
     /// The same with photons that the caller traced, without those of direct light.
@@ -127,29 +111,22 @@ impl Renderer {
         points.upload(&seen)?;
         let grid = (!prepared.bent.is_empty()).then(|| PhotonGrid::new(photons));
         let count = u32::try_from(photons.len()).expect("fewer than 2^32 photons");
-        Self::assemble(
-            gl,
-            prepared,
-            Traced { emitted: count, landings: count.into(), cut_off_share: 0.0, points, grid },
-        )
+        let traced = Traced { emitted: count, landings: count.into(), cut_off_share: 0.0, points, grid };
+        Self::assemble(gl, prepared, traced, settings)
     }
 
-    fn assemble(gl: &Gl, prepared: Prepared, traced: Traced) -> Result<Self> {
+    fn assemble(gl: &Gl, prepared: Prepared, traced: Traced, settings: &PictureSettings) -> Result<Self> {
         let Prepared { surfaces, traced: light, bent } = prepared;
-        let mut density = DensityStage::new(gl, surfaces.size())?;
-        density.add(&surfaces, &traced.points)?;
+        let mut pipeline = IrradiancePipeline::new(gl, surfaces.size(), settings.irradiance())?;
+        pipeline.count(&surfaces, &traced.points)?;
         Ok(Self {
             gl: gl.clone(),
             shade: ShadeStage::new(gl, surfaces.size())?,
-            size: surfaces.size(),
             surfaces,
-            density,
             light,
             bent,
             traced,
-            radii: None,
-            searches_again: false,
-            splats: [None, None],
+            pipeline,
         })
     }
 
@@ -166,63 +143,48 @@ impl Renderer {
     /// counted.
     pub fn picture(&mut self, settings: &PictureSettings) -> Result<(Layers, Account)> {
         settings.validate()?;
-        let mut searched = None;
-        let (chosen, width) = match settings.radius {
-            RadiusChoice::Fixed(radius) => (ChosenRadius::Fixed(radius), Wanted::Fixed(radius)),
-            RadiusChoice::Variable => {
-                let pipeline = searched.insert(self.radius_pipeline(settings)?);
-                // The photons are those of the picture before, if there was one.
-                let searches_again = std::mem::take(&mut self.searches_again);
-                let changed = if searches_again { Changed::Everything } else { Changed::Nothing };
-                let radii = pipeline.update(&Frame { changed, ..Frame::new(self.density.map()) })?;
-                (ChosenRadius::Map(radii), Wanted::Holding(settings.min_photons, settings.max_radius))
-            }
-        };
-        let fixed = matches!(chosen, ChosenRadius::Fixed(_));
-        self.light.seen_through =
-            seen_through(self.surfaces.view(), &self.bent, self.traced.grid.as_ref(), width, settings.kernel);
-        let shade = &mut self.shade;
-        let (shaded, irradiance) = match settings.estimate {
-            Estimate::Splat => {
-                let stage = splat_stage(&self.gl, self.size, &mut self.splats, settings.kernel, fixed)?;
-                let irradiance = stage.splat(&self.surfaces, &self.traced.points, chosen)?;
-                (shade.shade(&self.surfaces, irradiance, &self.light)?, irradiance.read()?)
-            }
-            Estimate::Gather { count_correction } => {
-                let mut stage =
-                    GatherStage::new(&self.gl, self.size, settings.kernel, fixed, count_correction)?;
-                let irradiance = stage.gather(&self.surfaces, &self.density, chosen)?;
-                (shade.shade(&self.surfaces, irradiance, &self.light)?, irradiance.read()?)
-            }
-        };
+        let asked = settings.irradiance();
+        self.pipeline.change(asked)?;
+        self.light.seen_through = seen_through(
+            self.surfaces.view(),
+            &self.bent,
+            self.traced.grid.as_ref(),
+            Wanted::of(&asked),
+            settings.kernel,
+        );
+        self.pipeline.clear_light();
+        let irradiance = self.pipeline.spread(&self.surfaces, &self.traced.points)?;
+        let shaded = self.shade.shade(&self.surfaces, irradiance, &self.light)?;
+        let irradiance = irradiance.read()?;
 
         let (position, normal) = (self.surfaces.read_position()?, self.surfaces.read_normal()?);
-        let (radius, limited) = match chosen {
-            ChosenRadius::Fixed(radius) => (Image::filled(self.size, radius), Image::filled(self.size, 0)),
-            ChosenRadius::Map(radii) => {
+        let size = self.surfaces.size();
+        let (radius, limited) = match (settings.radius, self.pipeline.radii()) {
+            (RadiusChoice::Fixed(radius), _) => (Image::filled(size, radius), Image::filled(size, 0)),
+            (RadiusChoice::Variable, Some(radii)) => {
                 let limited = radii.read_limited()?;
                 (radii.read()?, limited.unwrap_or_else(|| unreachable!("the settings ask for the mask")))
             }
+            (RadiusChoice::Variable, None) => unreachable!("variable radii were searched"),
         };
         let layers = Layers {
             beauty: shaded.beauty.map(rgb),
             direct: self.light.direct.map(rgb),
             indirect: shaded.indirect.map(rgb),
             irradiance: irradiance.map(rgb),
-            density: self.density.read_counts()?,
+            density: self.pipeline.density_stage().read_counts()?,
             radius,
             limited,
             normal: normal.map(rgb),
             depth: position.map(|[.., depth]| depth),
             albedo: self.surfaces.read_albedo()?.map(rgb),
         };
-        let account = self.account(&position, &normal, &irradiance, &layers.limited)?;
-        self.radii = searched.or(self.radii.take());
+        let account = self.account_of(&position, &normal, &irradiance, &layers.limited)?;
         Ok((layers, account))
     }
 
-    /// Compiles and allocates what a splat with these settings needs, so that the next picture takes as long as those after
-    /// it: radii are searched, but not kept, and a photon that is nowhere is drawn.
+    /// Compiles and allocates what a picture with these settings needs, so that the next one takes as long as those after it:
+    /// radii are searched, and again for the next picture, and a photon that is nowhere is drawn.
     ///
     /// # Errors
     /// As [`picture`](Self::picture).
@@ -230,99 +192,12 @@ impl Renderer {
         settings.validate()?;
         let mut nowhere = PhotonPoints::new(&self.gl);
         nowhere.upload(&[PhotonPoint::zeroed()])?;
-        let fixed = matches!(settings.radius, RadiusChoice::Fixed(_));
-        let mut searched = None;
-        let chosen = match settings.radius {
-            RadiusChoice::Fixed(radius) => ChosenRadius::Fixed(radius),
-            RadiusChoice::Variable => {
-                let pipeline = searched.insert(self.radius_pipeline(settings)?);
-                self.searches_again = true;
-                ChosenRadius::Map(pipeline.render(self.density.map())?)
-            }
-        };
-        let stage = splat_stage(&self.gl, self.size, &mut self.splats, settings.kernel, fixed)?;
-        let irradiance = stage.splat(&self.surfaces, &nowhere, chosen)?;
+        self.pipeline.change(settings.irradiance())?;
+        let irradiance = self.pipeline.spread(&self.surfaces, &nowhere)?;
         self.shade.shade(&self.surfaces, irradiance, &self.light)?;
-        self.radii = searched.or(self.radii.take());
+        self.pipeline.clear_radii();
         Ok(())
     }
-
-    /// The pipeline of the picture before, with its radii, if it answers the same question; else a new one.
-    fn radius_pipeline(&mut self, settings: &PictureSettings) -> Result<RadiusPipeline> {
-        let usual = Settings::default();
-        let search =
-            Search { min_photons: settings.min_photons, max_radius: settings.max_radius, ..usual.search };
-        let settings = Settings { search, limited_mask: true, ..usual };
-        match self.radii.take().filter(|pipeline| *pipeline.settings() == settings) {
-            Some(pipeline) => Ok(pipeline),
-            None => RadiusPipeline::new(&self.gl, self.size, TextureFormat::R32Float, settings),
-        }
-    }
-
-    fn account(
-        &self,
-        position: &Image<[f32; 4]>,
-        normal: &Image<[f32; 4]>,
-        irradiance: &Image<[f32; 4]>,
-        limited: &Image<u8>,
-    ) -> Result<Account> {
-        let power = self.density.read_power()?;
-        let view = self.surfaces.view();
-        let (mut contributing, mut fragments) = (0.0, 0.0);
-        let (mut power_in, mut power_out) = (DVec3::ZERO, DVec3::ZERO);
-        let (mut diffuse, mut ended) = (0_u32, 0_u32);
-        for (index, photons) in power.values().iter().enumerate() {
-            let [red, green, blue, count] = photons.map(f64::from);
-            contributing += count;
-            power_in += DVec3::new(red, green, blue);
-            let [red, green, blue, drawn] = irradiance.values()[index].map(f64::from);
-            fragments += drawn;
-            if normal.values()[index][3] > 0.0 {
-                let area = pixel_area(view, position.values()[index], normal.values()[index]);
-                power_out += area * DVec3::new(red, green, blue);
-                diffuse += 1;
-                ended += u32::from(limited.values()[index]);
-            }
-        }
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a sum of counts")]
-        let contributing = contributing as u64;
-        Ok(Account {
-            emitted: self.traced.emitted,
-            landings: self.traced.landings,
-            uploaded: self.traced.points.count(),
-            contributing,
-            power_in: power_in.to_array(),
-            power_out: power_out.to_array(),
-            fragments,
-            cut_off_share: self.traced.cut_off_share,
-            limited_share: f64::from(ended) / f64::from(diffuse.max(1)),
-        })
-    }
-}
-
-/// The stage that was used last with such radii, if its kernel is the same; else a new one.
-fn splat_stage<'a>(
-    gl: &Gl,
-    size: UVec2,
-    stages: &'a mut [Option<(Kernel, SplatStage)>; 2],
-    kernel: Kernel,
-    fixed: bool,
-) -> Result<&'a mut SplatStage> {
-    let slot = &mut stages[usize::from(fixed)];
-    let stage = match slot.take().filter(|(of, _)| *of == kernel) {
-        Some(stage) => stage,
-        None => (kernel, SplatStage::new(gl, size, kernel, fixed)?),
-    };
-    Ok(&mut slot.insert(stage).1)
-}
-
-/// Area that a pixel covers on its surface, in square scene units; as `area_on` in `common/surfaces.glsl`.
-fn pixel_area(view: &View, position: [f32; 4], normal: [f32; 4]) -> f64 {
-    let at = |[x, y, z, _]: [f32; 4]| Vec3::new(x, y, z).as_dvec3();
-    let depth = f64::from(position[3]);
-    let sight = at(position) - view.position().as_dvec3();
-    let slant = at(normal).dot(sight).abs().max(1e-3 * sight.length());
-    f64::from(view.pixel_side()).powi(2) * depth.powi(3) / slant
 }
 
 /// Adds light to a pixel, counted row by row.

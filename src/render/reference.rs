@@ -3,17 +3,18 @@
 
 use glam::DVec3;
 
+use super::account::pixel_area;
 use super::prepared::Prepared;
 use super::seen_through::{Wanted, seen_through};
 use super::sight::Place;
 use super::traced::Traced;
-use super::{Layers, Progress, add, pixel_area, rgb};
+use super::{Layers, Progress, add, rgb};
 use crate::error::Result;
 use crate::gl::Gl;
 use crate::image::Image;
 use crate::light::DensityStage;
 use crate::maps::SurfaceMaps;
-use crate::photon::TraceSettings;
+use crate::photon::{Emission, TraceSettings};
 use crate::render::shade::TracedLight;
 use crate::scene::Scene;
 use crate::settings::{FirstBounce, Kernel, PictureSettings};
@@ -68,12 +69,20 @@ impl Reference {
         progress: &mut dyn FnMut(Progress),
     ) -> Result<()> {
         let view = *self.surfaces.view();
-        let traced =
-            Traced::new(&self.gl, scene, &view, trace, !self.bent.is_empty(), FirstBounce::Rays, progress)?;
+        let emission = Emission::new(scene, trace)?;
+        let traced = Traced::new(
+            &self.gl,
+            scene,
+            &view,
+            &emission,
+            !self.bent.is_empty(),
+            FirstBounce::Rays,
+            progress,
+        )?;
         self.density.clear();
         self.density.add(&self.surfaces, &traced.points)?;
         // The counts are checked before they are believed.
-        add_up(&mut self.power, &self.density.read_power()?);
+        add_up(&mut self.power, &self.density.power().read()?);
         let through = seen_through(&view, &self.bent, traced.grid.as_ref(), Wanted::Fixed(0), Kernel::Box);
         add_up(&mut self.seen_through, &through);
         self.seeds += 1;

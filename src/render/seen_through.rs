@@ -9,7 +9,7 @@ use super::add;
 use super::nearest::{PhotonGrid, Width};
 use super::sight::Place;
 use crate::image::Image;
-use crate::settings::Kernel;
+use crate::settings::{IrradianceSettings, Kernel, RadiusChoice, Search};
 use crate::view::View;
 
 /// How wide the disc of a place in a mirror or behind glass is, in pixels.
@@ -19,6 +19,17 @@ pub(super) enum Wanted {
     Holding(u32, u32),
     /// As for this radius.
     Fixed(u32),
+}
+
+impl Wanted {
+    /// As wide as the kernels of photons that are seen straight.
+    pub(super) fn of(settings: &IrradianceSettings) -> Self {
+        let Search { min_photons, max_radius, .. } = settings.radii.search;
+        match settings.radius {
+            RadiusChoice::Variable => Self::Holding(min_photons, max_radius),
+            RadiusChoice::Fixed(radius) => Self::Fixed(radius),
+        }
+    }
 }
 
 /// Indirect light in mirrors and through glass: the photons around each place that is seen there.

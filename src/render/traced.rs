@@ -5,9 +5,7 @@ use super::nearest::PhotonGrid;
 use crate::error::Result;
 use crate::gl::Gl;
 use crate::maps::PhotonPoints;
-use crate::photon::{
-    Emission, FirstHit, Photon, PhotonPoint, Tally, TraceSettings, trace_from_hits, trace_in_batches,
-};
+use crate::photon::{Emission, FirstHit, Photon, PhotonPoint, Tally, trace_from_hits, trace_in_batches};
 use crate::render::bounce_map::BounceMaps;
 use crate::scene::Scene;
 use crate::settings::FirstBounce;
@@ -35,12 +33,12 @@ impl Traced {
         gl: &Gl,
         scene: &Scene,
         view: &View,
-        trace: &TraceSettings,
+        emission: &Emission<'_>,
         needs_grid: bool,
         first_bounce: FirstBounce,
         progress: &mut dyn FnMut(Progress),
     ) -> Result<Self> {
-        let emission = Emission::new(scene, trace)?;
+        let trace = emission.settings();
         let (mut seen, mut all) = (Vec::new(), Vec::new());
         let mut points = PhotonPoints::new(gl);
         let mut keep = |photons: &[Photon], points: &mut PhotonPoints| {
@@ -63,7 +61,7 @@ impl Traced {
             progress(Progress { stage: "photons", done: f64::from(followed) / f64::from(trace.photons) });
         };
         let tally = match first_bounce {
-            FirstBounce::Rays => trace_in_batches(scene, &emission, |photons, followed| {
+            FirstBounce::Rays => trace_in_batches(scene, emission, |photons, followed| {
                 keep(photons, &mut points)?;
                 show(followed);
                 Ok::<_, crate::Error>(())
@@ -71,7 +69,7 @@ impl Traced {
             FirstBounce::Maps => {
                 let mut maps = BounceMaps::new(gl, scene)?;
                 let (mut all, mut followed) = (Tally::default(), 0);
-                while let Some(hits) = maps.next_hits(&emission, followed)? {
+                while let Some(hits) = maps.next_hits(emission, followed)? {
                     let (photons, tally) = trace_from_hits(scene, trace, &hits);
                     keep(&photons, &mut points)?;
                     all.merge(&tally);

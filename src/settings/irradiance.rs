@@ -1,29 +1,57 @@
 //! What is asked of an [`IrradiancePipeline`](crate::IrradiancePipeline).
 
-use super::{Kernel, MAX_PICTURE_RADIUS, RadiusChoice, Settings};
+use super::{Kernel, MAX_PICTURE_RADIUS, RadiusChoice, Search, Settings};
 use crate::error::{Error, Result};
 
 /// How photons become irradiance.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+pub enum Estimate {
+    /// Each photon spreads its power over the pixels around it, with the radius of its own pixel.
+    #[default]
+    Splat,
+    /// Each pixel gathers the power around it, with its own radius.
+    #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
+    Gather {
+        /// Whether (c - 1) / c of what c photons give is taken, as a radius that ends at a photon asks for.
+        count_correction: bool,
+    },
+}
+
+/// Everything that light from photons depends on beside the photons and surfaces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct IrradianceSettings {
     /// Where the radius of each kernel comes from.
     pub radius: RadiusChoice,
     /// How radii are searched, if they are variable; MR goes up to [`MAX_PICTURE_RADIUS`], and there is no mask.
-    pub search: Settings,
+    #[cfg_attr(feature = "serde", serde(rename = "search"))]
+    pub radii: Settings,
     /// The falloff.
     pub kernel: Kernel,
+    /// Splat or gather.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Estimate::is_splat"))]
+    pub estimate: Estimate,
+}
+
+#[cfg(feature = "serde")]
+impl Estimate {
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde calls it so")]
+    fn is_splat(&self) -> bool {
+        *self == Self::Splat
+    }
 }
 
 impl Default for IrradianceSettings {
-    /// Variable radii for n = 400 up to MR = 64 with Silverman's kernel, as pictures have them.
+    /// Variable radii for n = 400 up to MR = 64, splatted with Silverman's kernel, as pictures have them.
     fn default() -> Self {
         let usual = Settings::default();
-        let search = super::Search { min_photons: 400, max_radius: 64, ..usual.search };
+        let search = Search { min_photons: 400, max_radius: 64, ..usual.search };
         Self {
             radius: RadiusChoice::Variable,
-            search: Settings { search, ..usual },
+            radii: Settings { search, ..usual },
             kernel: Kernel::Silverman,
+            estimate: Estimate::Splat,
         }
     }
 }
@@ -34,24 +62,26 @@ impl IrradianceSettings {
     /// # Errors
     /// [`Error::Setting`] with the field's name.
     pub fn validate(&self) -> Result<()> {
-        self.search.validate()?;
-        let refuse = |name, value: String, reason: &str| {
-            Err(Error::Setting { name, value, reason: reason.to_owned() })
-        };
-        if self.search.masked {
-            return refuse(
-                "masked",
-                "true".to_owned(),
-                "a kernel needs the radius of every pixel with a photon",
-            );
+        self.radii.validate()?;
+        if self.radii.masked {
+            return Err(Error::Setting {
+                name: "masked",
+                value: "true".to_owned(),
+                reason: "a kernel needs the radius of every pixel with a photon".to_owned(),
+            });
         }
-        let (name, radius) = match self.radius {
-            RadiusChoice::Variable => ("max_radius", self.search.search.max_radius),
-            RadiusChoice::Fixed(radius) => ("radius", radius),
-        };
-        if !(1..=MAX_PICTURE_RADIUS).contains(&radius) {
-            return refuse(name, radius.to_string(), "a kernel's radius goes from 1 to 96 pixels");
+        match self.radius {
+            RadiusChoice::Variable => check_radius("max_radius", self.radii.search.max_radius, ""),
+            RadiusChoice::Fixed(radius) => check_radius("radius", radius, "fixed:"),
         }
-        Ok(())
     }
+}
+
+/// Refuses a kernel that is too wide or empty; its setting's value is written with `prefix`.
+fn check_radius(name: &'static str, radius: u32, prefix: &str) -> Result<()> {
+    if (1..=MAX_PICTURE_RADIUS).contains(&radius) {
+        return Ok(());
+    }
+    let reason = format!("a kernel's radius goes from 1 to {MAX_PICTURE_RADIUS} pixels");
+    Err(Error::Setting { name, value: format!("{prefix}{radius}"), reason })
 }

@@ -73,3 +73,11 @@ pub enum RadiusChoice {
     /// The same for all, in pixels.
     Fixed(u32),
 }
+
+impl RadiusChoice {
+    /// Whether it is the same for all.
+    #[must_use]
+    pub fn is_fixed(self) -> bool {
+        matches!(self, Self::Fixed(_))
+    }
+}

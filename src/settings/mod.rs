@@ -12,10 +12,10 @@ mod picture;
 mod validate;
 
 pub use faults::Faults;
-pub use irradiance::IrradianceSettings;
+pub use irradiance::{Estimate, IrradianceSettings};
 pub use kernel::{Kernel, MAX_PICTURE_RADIUS, RadiusChoice};
 #[cfg(feature = "scene")]
-pub use picture::{DirectLight, Estimate, FirstBounce, PictureSettings};
+pub use picture::{DirectLight, FirstBounce, PictureSettings};
 
 /// The largest possible [`Search::max_radius`]: the area (2 MR + 1)² still fits 32 bits.
 pub const MAX_RADIUS_LIMIT: u32 = 32_767;

@@ -2,21 +2,8 @@
 
 use glam::UVec2;
 
-use super::{Kernel, MAX_PICTURE_RADIUS, RadiusChoice};
+use super::{Estimate, IrradianceSettings, Kernel, RadiusChoice, Search, Settings};
 use crate::error::{Error, Result};
-
-/// How photons become irradiance.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
-pub enum Estimate {
-    /// Each photon spreads its power over the pixels around it, with the radius of its own pixel.
-    Splat,
-    /// Each pixel gathers the power around it, with its own radius.
-    Gather {
-        /// Whether (c - 1) / c of what c photons give is taken, as a radius that ends at a photon asks for.
-        count_correction: bool,
-    },
-}
 
 /// How photons find what they meet first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,7 +37,7 @@ pub struct PictureSettings {
     pub size: UVec2,
     /// n: photons that a box has to hold, at least 1.
     pub min_photons: u32,
-    /// MR: the largest radius in pixels, from 1 to [`MAX_PICTURE_RADIUS`].
+    /// MR: the largest radius in pixels, from 1 to [`MAX_PICTURE_RADIUS`](super::MAX_PICTURE_RADIUS).
     pub max_radius: u32,
     /// Variable or fixed.
     pub radius: RadiusChoice,
@@ -90,6 +77,20 @@ impl Default for PictureSettings {
 }
 
 impl PictureSettings {
+    /// What the light from photons depends on, as [`IrradiancePipeline`](crate::IrradiancePipeline) takes it, with the pixels
+    /// that even MR does not satisfy marked.
+    #[must_use]
+    pub fn irradiance(&self) -> IrradianceSettings {
+        let usual = Settings::default();
+        let search = Search { min_photons: self.min_photons, max_radius: self.max_radius, ..usual.search };
+        IrradianceSettings {
+            radius: self.radius,
+            radii: Settings { search, limited_mask: true, ..usual },
+            kernel: self.kernel,
+            estimate: self.estimate,
+        }
+    }
+
     /// Checks every range.
     ///
     /// # Errors
@@ -99,25 +100,13 @@ impl PictureSettings {
             Err(Error::Setting { name, value, reason: reason.to_owned() })
         };
         if self.size.min_element() == 0 {
-            return refuse(
-                "size",
-                format!("{} x {}", self.size.x, self.size.y),
-                "a picture has at least one pixel",
-            );
+            let value = format!("{} x {}", self.size.x, self.size.y);
+            return refuse("size", value, "a picture has at least one pixel");
         }
-        if self.min_photons == 0 {
-            return refuse("min_photons", "0".to_owned(), "every box holds 0 photons; ask for at least 1");
-        }
-        let fits = |radius: u32| (1..=MAX_PICTURE_RADIUS).contains(&radius);
-        let range = "a kernel's radius goes from 1 to 96 pixels";
-        if !fits(self.max_radius) {
-            return refuse("max_radius", self.max_radius.to_string(), range);
-        }
-        if let RadiusChoice::Fixed(radius) = self.radius
-            && !fits(radius)
-        {
-            return refuse("radius", format!("fixed:{radius}"), range);
-        }
+        // MR is in the program's options even where radii are fixed, and answers for itself.
+        let irradiance = self.irradiance();
+        IrradianceSettings { radius: RadiusChoice::Variable, ..irradiance }.validate()?;
+        irradiance.validate()?;
         if self.light_samples == 0 {
             return refuse("light_samples", "0".to_owned(), "a light takes at least 1 shadow ray");
         }

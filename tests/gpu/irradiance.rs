@@ -8,7 +8,7 @@ use glow::HasContext as _;
 use varikernel::render::Renderer;
 use varikernel::scene::Scene;
 use varikernel::settings::{
-    Edges, IrradianceSettings, Kernel, PictureSettings, RadiusChoice, Search, Settings,
+    Edges, Estimate, IrradianceSettings, Kernel, PictureSettings, RadiusChoice, Search, Settings,
 };
 use varikernel::{
     ChosenRadius, DensityStage, Error, Gl, HostDepth, HostSurfaces, Image, IrradiancePipeline, PhotonPoint,
@@ -24,11 +24,20 @@ fn question() -> Search {
     Search { min_photons: 40, max_radius: 12, edges: Edges::Scale, order: Settings::default().search.order }
 }
 
+/// Radii and estimates that go together: all.
+const WAYS: [(RadiusChoice, Estimate); 4] = [
+    (RadiusChoice::Variable, Estimate::Splat),
+    (RadiusChoice::Fixed(3), Estimate::Splat),
+    (RadiusChoice::Variable, Estimate::Gather { count_correction: true }),
+    (RadiusChoice::Fixed(3), Estimate::Gather { count_correction: false }),
+];
+
 fn settings(radius: RadiusChoice) -> IrradianceSettings {
     IrradianceSettings {
         radius,
         kernel: Kernel::Epanechnikov,
-        search: Settings { search: question(), ..Settings::default() },
+        radii: Settings { search: question(), ..Settings::default() },
+        estimate: Estimate::Splat,
     }
 }
 
@@ -105,9 +114,11 @@ fn a_host_gets_the_irradiance_of_the_renderer_to_the_last_bit() {
     for gl in each() {
         let mut stand = Stand::new(&gl, 3000);
         let points = stand.uploaded(&gl);
-        for radius in [RadiusChoice::Variable, RadiusChoice::Fixed(3)] {
-            let (layers, _) = stand.renderer.picture(&picture_settings(radius)).unwrap();
-            let mut pipeline = IrradiancePipeline::new(&gl, UVec2::splat(SIDE), settings(radius)).unwrap();
+        for (radius, estimate) in WAYS {
+            let asked = PictureSettings { estimate, ..picture_settings(radius) };
+            let (layers, _) = stand.renderer.picture(&asked).unwrap();
+            let asked = IrradianceSettings { estimate, ..settings(radius) };
+            let mut pipeline = IrradiancePipeline::new(&gl, UVec2::splat(SIDE), asked).unwrap();
             // A second frame forgets the first.
             for _ in 0..2 {
                 let found = pipeline.render(&stand.surfaces, &points).unwrap().read().unwrap();
@@ -119,6 +130,47 @@ fn a_host_gets_the_irradiance_of_the_renderer_to_the_last_bit() {
             assert_eq!(radii, matches!(radius, RadiusChoice::Variable).then_some(layers.radius));
         }
     }
+}
+
+#[test]
+fn other_settings_give_what_a_new_pipeline_would_and_a_failure_leaves_the_old_ones() {
+    let gl = egl();
+    let stand = Stand::new(&gl, 3000);
+    let (size, points) = (UVec2::splat(SIDE), stand.uploaded(&gl));
+    let asked = |(radius, estimate)| IrradianceSettings { estimate, ..settings(radius) };
+    let mut pipeline = IrradiancePipeline::new(&gl, size, asked(WAYS[0])).unwrap();
+    pipeline.count(&stand.surfaces, &points).unwrap();
+    // Twice, so that each is also met again when it is compiled.
+    for way in WAYS.into_iter().chain(WAYS) {
+        let mut fresh = IrradiancePipeline::new(&gl, size, asked(way)).unwrap();
+        let expected = fresh.render(&stand.surfaces, &points).unwrap().read().unwrap();
+        pipeline.change(asked(way)).unwrap();
+        pipeline.clear_light();
+        let found = pipeline.spread(&stand.surfaces, &points).unwrap().read().unwrap();
+        assert_eq!(found, expected, "{way:?}");
+        assert_eq!(pipeline.radii().is_some(), way.0 == RadiusChoice::Variable);
+
+        let held = gl.texture_bytes();
+        pipeline.change(settings(RadiusChoice::Fixed(97))).unwrap_err();
+        assert_eq!(*pipeline.settings(), asked(way));
+        assert_eq!(gl.texture_bytes(), held);
+        pipeline.clear_light();
+        assert_eq!(pipeline.spread(&stand.surfaces, &points).unwrap().read().unwrap(), expected);
+    }
+    // Another question is another search, of the photons that are counted.
+    let other = Settings { search: Search { min_photons: 9, ..question() }, ..Settings::default() };
+    let other = IrradianceSettings { radii: other, ..settings(RadiusChoice::Variable) };
+    pipeline.change(other).unwrap();
+    pipeline.spread(&stand.surfaces, &points).unwrap();
+    let mut fresh = IrradiancePipeline::new(&gl, size, other).unwrap();
+    fresh.render(&stand.surfaces, &points).unwrap();
+    let radii = |pipeline: &IrradiancePipeline| pipeline.radii().unwrap().read().unwrap();
+    assert_eq!(radii(&pipeline), radii(&fresh));
+    // A size that it grows to is empty for all that was compiled.
+    pipeline.resize(2 * size).unwrap();
+    assert_eq!(pipeline.size(), 2 * size);
+    pipeline.change(asked(WAYS[3])).unwrap();
+    assert_eq!(pipeline.irradiance().size(), 2 * size);
 }
 
 #[test]
@@ -233,10 +285,10 @@ fn stages_are_usable_apart() {
 
     let mut density = DensityStage::new(&gl, size).unwrap();
     let map = density.add(&stand.surfaces, &points).unwrap();
-    let search = settings(RadiusChoice::Variable).search;
+    let search = settings(RadiusChoice::Variable).radii;
     let mut radius = varikernel::RadiusPipeline::new(&gl, size, map.format(), search).unwrap();
     let radii = radius.render(map).unwrap();
-    let mut splat = SplatStage::new(&gl, size, Kernel::Epanechnikov, false).unwrap();
+    let mut splat = SplatStage::new(&gl, size, &settings(RadiusChoice::Variable)).unwrap();
     let found = splat.splat(&stand.surfaces, &points, ChosenRadius::Map(radii)).unwrap().read().unwrap();
     assert_eq!(found, expected);
     let error = splat.splat(&stand.surfaces, &points, ChosenRadius::Fixed(2)).unwrap_err();
@@ -386,8 +438,8 @@ fn what_does_not_fit_is_refused_with_the_names_of_its_enums() {
     assert_eq!(error, "surfaces: expected 8 x 8, got 48 x 48");
     let error =
         IrradiancePipeline::new(&gl, small, settings(RadiusChoice::Fixed(97))).unwrap_err().to_string();
-    assert_eq!(error, "radius = 97 is not possible: a kernel's radius goes from 1 to 96 pixels");
-    let masked = Settings { masked: true, ..settings(RadiusChoice::Variable).search };
-    let masked = IrradianceSettings { search: masked, ..settings(RadiusChoice::Variable) };
+    assert_eq!(error, "radius = fixed:97 is not possible: a kernel's radius goes from 1 to 96 pixels");
+    let masked = Settings { masked: true, ..settings(RadiusChoice::Variable).radii };
+    let masked = IrradianceSettings { radii: masked, ..settings(RadiusChoice::Variable) };
     assert!(IrradiancePipeline::new(&gl, small, masked).is_err());
 }

@@ -168,7 +168,7 @@ fn every_object_of_the_library_has_a_name() {
     drop(others);
     drop(pictures);
 }
-fn pictures(gl: &Gl) -> varikernel::render::Stages {
+fn pictures(gl: &Gl) -> varikernel::render::Renderer {
     use varikernel::settings::{DirectLight, Estimate, PictureSettings};
 
     let scene = varikernel::scene::Scene::shipped("cornell-glass").unwrap();
@@ -182,7 +182,8 @@ fn pictures(gl: &Gl) -> varikernel::render::Stages {
     };
     let mut renderer = varikernel::render::Renderer::with_photons(gl, &scene, &settings, &photons).unwrap();
     renderer.picture(&settings).unwrap();
-    renderer.into_stages(&settings).unwrap()
+    renderer.spread(&PictureSettings { estimate: Estimate::Splat, ..settings }).unwrap();
+    renderer
 }
 
 thread_local! {

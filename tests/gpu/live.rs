@@ -22,16 +22,16 @@ fn settings(scene: &Scene) -> LiveSettings {
     let mut settings = LiveSettings::new(scene);
     settings.size = UVec2::splat(SIDE);
     settings.photons_per_step = 1 << 13;
-    settings.irradiance.search.search.min_photons = 50;
-    settings.irradiance.search.search.max_radius = 16;
+    settings.irradiance.radii.search.min_photons = 50;
+    settings.irradiance.radii.search.max_radius = 16;
     settings
 }
 
 fn picture_settings(live: &LiveSettings) -> PictureSettings {
     PictureSettings {
         size: live.size,
-        min_photons: live.irradiance.search.search.min_photons,
-        max_radius: live.irradiance.search.search.max_radius,
+        min_photons: live.irradiance.radii.search.min_photons,
+        max_radius: live.irradiance.radii.search.max_radius,
         radius: live.irradiance.radius,
         kernel: live.irradiance.kernel,
         light_samples: 16,
@@ -124,7 +124,7 @@ fn changes_start_anew_what_they_change_and_a_refused_one_changes_nothing() {
     let before = live.read().unwrap();
 
     let mut refused = usual;
-    refused.irradiance.search.search.max_radius = 1000;
+    refused.irradiance.radii.search.max_radius = 1000;
     assert!(matches!(live.change(refused), Err(Error::Setting { .. })));
     let too_large = LiveSettings { size: UVec2::splat(gl.info().max_texture_size + 1), ..usual };
     let too_few = LiveSettings { photons_per_step: 0, ..usual };
@@ -145,7 +145,7 @@ fn changes_start_anew_what_they_change_and_a_refused_one_changes_nothing() {
     assert_eq!(live.read().unwrap().size(), UVec2::new(40, 24));
 
     let mut wider = usual;
-    wider.irradiance.search.search.min_photons = 500;
+    wider.irradiance.radii.search.min_photons = 500;
     live.change(wider).unwrap();
     live.step().unwrap();
     let fresh = after(&gl, &scene, wider, 1);
@@ -157,7 +157,7 @@ fn a_pixel_says_why_its_radius_is_what_it_is() {
     let gl = egl();
     let scene = scene("cornell-boxes");
     let settings = settings(&scene);
-    let search = settings.irradiance.search.search;
+    let search = settings.irradiance.radii.search;
     let mut live = after(&gl, &scene, settings, 2);
     let (mut bounded, mut named) = (0, 0_u32);
     for (x, y) in (1..SIDE).step_by(3).flat_map(|y| (1..SIDE).step_by(3).map(move |x| (x, y))) {

@@ -8,7 +8,7 @@ use std::process::Command;
 
 use glam::UVec2;
 use varikernel::gl::{StageTimes, Timer};
-use varikernel::settings::{IrradianceSettings, Kernel, Method, Order, Settings};
+use varikernel::settings::{Estimate, IrradianceSettings, Method, Order, RadiusChoice, Settings};
 use varikernel::{
     AdaptivePipeline, ChosenRadius, CountBounds, DensityMap, DensityStage, Error, Frame, GatherStage, Gl,
     HostDepth, HostSurfaces, Image, IrradiancePipeline, Mask, MaskMaker, PositionMaker, RadiusMap,
@@ -48,11 +48,12 @@ impl Light {
         let host = HostPicture::new(gl, size);
         let mut pipeline = IrradiancePipeline::new(gl, size, IrradianceSettings::default()).unwrap();
         pipeline.render(&host.surfaces, &host.photons).unwrap();
+        let fixed = IrradianceSettings { radius: RadiusChoice::Fixed(2), ..IrradianceSettings::default() };
         Self {
             pipeline,
             density: DensityStage::new(gl, size).unwrap(),
-            splat: SplatStage::new(gl, size, Kernel::Cone, true).unwrap(),
-            gather: GatherStage::new(gl, size, Kernel::Cone, true, false).unwrap(),
+            splat: SplatStage::new(gl, size, &fixed).unwrap(),
+            gather: GatherStage::new(gl, size, &fixed).unwrap(),
             host,
         }
     }
@@ -65,6 +66,8 @@ impl Light {
         let HostPicture { positions, surfaces, photons, view } = host;
         let size = view.size();
         let (fixed, usual) = (ChosenRadius::Fixed(2), IrradianceSettings::default());
+        let usual_gather =
+            IrradianceSettings { estimate: Estimate::Gather { count_correction: true }, ..usual };
         let depth = HostDepth { texture: name, reversed: false, zero_to_one: false };
         let borrowed = HostSurfaces { position: name, normal: name };
         let new_photons = HostPicture::photons(9);
@@ -74,16 +77,21 @@ impl Light {
             ("IrradiancePipeline::new", failure(IrradiancePipeline::new(gl, size, usual))),
             ("IrradiancePipeline::render", failure(pipeline.render(surfaces, photons))),
             ("IrradiancePipeline::add", failure(pipeline.add(surfaces, photons))),
+            ("IrradiancePipeline::change", failure(pipeline.change(usual_gather))),
+            ("IrradiancePipeline::count", failure(pipeline.count(surfaces, photons))),
+            ("IrradiancePipeline::search", failure(pipeline.search())),
+            ("IrradiancePipeline::spread", failure(pipeline.spread(surfaces, photons))),
             ("IrradiancePipeline::resize", failure(pipeline.resize(2 * size))),
             ("IrradiancePipeline::resize, same", failure(pipeline.resize(size))),
             ("IrradianceMap::read", failure(pipeline.irradiance().read())),
             ("DensityStage::new", failure(DensityStage::new(gl, size))),
             ("DensityStage::add", failure(density.add(surfaces, photons))),
             ("DensityStage::read_counts", failure(density.read_counts())),
-            ("SplatStage::new", failure(SplatStage::new(gl, size, Kernel::Box, true))),
+            ("PowerMap::read", failure(density.power().read())),
+            ("SplatStage::new", failure(SplatStage::new(gl, size, &usual))),
             ("SplatStage::add", failure(splat.add(surfaces, photons, fixed))),
-            ("GatherStage::new", failure(GatherStage::new(gl, size, Kernel::Box, true, true))),
-            ("GatherStage::gather", failure(gather.gather(surfaces, density, fixed))),
+            ("GatherStage::new", failure(GatherStage::new(gl, size, &usual))),
+            ("GatherStage::gather", failure(gather.gather(surfaces, density.power(), fixed))),
             ("PositionMaker::borrow", failure(PositionMaker::borrow(gl, depth))),
             ("PositionMaker::render", failure(positions.render(view))),
             ("SurfaceMaps::borrow", failure(SurfaceMaps::borrow(gl, *view, borrowed))),

@@ -12,7 +12,7 @@ use varikernel::maps::{ChosenRadius, PhotonPoints, SurfaceMaps};
 use varikernel::photon::PhotonPoint;
 use varikernel::render::draw_surfaces;
 use varikernel::scene::Scene;
-use varikernel::settings::Kernel;
+use varikernel::settings::{IrradianceSettings, Kernel, RadiusChoice};
 
 /// The relative error that a pixel's sum of kernels stays below, as `splat` promises.
 const SPLAT_ERROR: f64 = 1.0 / 512.0;
@@ -101,7 +101,12 @@ pub(super) fn blending_rows(gl: &Gl) -> Result<Vec<Row>> {
 /// Kernels drawn over one pixel, against their sum in f64.
 pub(super) fn splat_rows(gl: &Gl, extent: Extent) -> Result<Vec<Row>> {
     let (surfaces, photon) = stand(gl)?;
-    let mut stage = SplatStage::new(gl, surfaces.size(), Kernel::Box, true)?;
+    let settings = IrradianceSettings {
+        kernel: Kernel::Box,
+        radius: RadiusChoice::Fixed(1),
+        ..IrradianceSettings::default()
+    };
+    let mut stage = SplatStage::new(gl, surfaces.size(), &settings)?;
     let mut sum = |points: &PhotonPoints| -> Result<f64> {
         let map = stage.splat(&surfaces, points, ChosenRadius::Fixed(1))?.read()?;
         Ok(f64::from(map.at(MIDDLE.x, MIDDLE.y)[0]))

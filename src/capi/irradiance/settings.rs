@@ -62,7 +62,7 @@ pub unsafe extern "C" fn varikernel_irradiance_settings_default(
         check_place(settings, "settings")?;
         check_size("varikernel_irradiance_settings", size, SIZE)?;
         let usual = IrradianceSettings::default();
-        let Search { min_photons, max_radius, edges, .. } = usual.search.search;
+        let Search { min_photons, max_radius, edges, .. } = usual.radii.search;
         let plain = PlainIrradianceSettings {
             struct_size: size,
             fixed_radius: match usual.radius {
@@ -96,16 +96,17 @@ impl PlainIrradianceSettings {
             min_photons: self.min_photons,
             max_radius: self.max_radius,
             edges: read_edges(self.edges)?,
-            ..usual.search.search
+            ..usual.radii.search
         };
         let settings = IrradianceSettings {
             radius: match self.fixed_radius {
                 0 => RadiusChoice::Variable,
                 radius => RadiusChoice::Fixed(radius),
             },
-            search: Settings { search, ..usual.search },
+            radii: Settings { search, ..usual.radii },
             kernel: kernel
                 .ok_or_else(|| out_of_range("kernel", self.kernel, "it is one of VARIKERNEL_KERNEL_..."))?,
+            ..usual
         };
         Ok((settings, flag("from_depth", self.from_depth)?))
     }

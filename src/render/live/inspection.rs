@@ -64,7 +64,7 @@ impl Inspector {
         let radius = match (pipeline.settings().radius, radii) {
             (RadiusChoice::Fixed(radius), _) => radius,
             (RadiusChoice::Variable, Some(radii)) => radii.at(pixel.x, pixel.y),
-            (RadiusChoice::Variable, None) => pipeline.settings().search.search.max_radius,
+            (RadiusChoice::Variable, None) => pipeline.settings().radii.search.max_radius,
         };
         let within = |radius| table.count(Inside::of_box(size, pixel.x, pixel.y, radius));
         let hit = scene.cast(&view.ray(pixel.x, pixel.y));

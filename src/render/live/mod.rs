@@ -113,11 +113,11 @@ impl Live {
         // Whatever can fail comes first.
         let shown = if moved { Some(Shown::new(&self.surface_stage, &self.scene, &settings)?) } else { None };
         let shade = if resized { Some(ShadeStage::new(gl, settings.size)?) } else { None };
-        let pipeline = if redrawn {
-            Some(IrradiancePipeline::new(gl, settings.size, settings.irradiance)?)
+        if resized {
+            self.pipeline = IrradiancePipeline::new(gl, settings.size, settings.irradiance)?;
         } else {
-            None
-        };
+            self.pipeline.change(settings.irradiance)?;
+        }
         self.settings = settings;
         if moved || redrawn || settings.bounces != old.bounces {
             self.emitted = 0;
@@ -131,9 +131,6 @@ impl Live {
         }
         if let Some(shade) = shade {
             self.shade = shade;
-        }
-        if let Some(pipeline) = pipeline {
-            self.pipeline = pipeline;
         }
         Ok(())
     }

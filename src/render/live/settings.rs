@@ -33,7 +33,7 @@ impl LiveSettings {
     #[must_use]
     pub fn new(scene: &Scene) -> Self {
         let mut irradiance = IrradianceSettings::default();
-        irradiance.search.limited_mask = true;
+        irradiance.radii.limited_mask = true;
         Self {
             size: UVec2::splat(512),
             camera: scene.camera,

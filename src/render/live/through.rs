@@ -5,7 +5,7 @@ use crate::photon::PhotonPoint;
 use crate::render::nearest::PhotonGrid;
 use crate::render::seen_through::{Wanted, seen_through};
 use crate::render::sight::Place;
-use crate::settings::{IrradianceSettings, RadiusChoice};
+use crate::settings::IrradianceSettings;
 use crate::view::View;
 
 /// Landings that are kept, 40 bytes each; with more, this light stays as it is.
@@ -45,13 +45,8 @@ impl ProgressiveThrough {
             return;
         }
         self.gathered = self.photons.len();
-        let search = settings.search.search;
-        let wanted = match settings.radius {
-            RadiusChoice::Variable => Wanted::Holding(search.min_photons, search.max_radius),
-            RadiusChoice::Fixed(radius) => Wanted::Fixed(radius),
-        };
         let grid = PhotonGrid::new(&self.photons);
-        let light = seen_through(&self.view, &self.bent, Some(&grid), wanted, settings.kernel);
+        let light = seen_through(&self.view, &self.bent, Some(&grid), Wanted::of(settings), settings.kernel);
         self.image = light.map(|[red, green, blue, alpha]| [scale * red, scale * green, scale * blue, alpha]);
     }
 

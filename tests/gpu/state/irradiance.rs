@@ -1,7 +1,7 @@
 //! Every public call around photons and a host's g-buffer, those that fail included.
 
 use glam::UVec2;
-use varikernel::settings::{IrradianceSettings, Kernel, RadiusChoice};
+use varikernel::settings::{IrradianceSettings, RadiusChoice};
 use varikernel::{
     ChosenRadius, DensityStage, GatherStage, HostDepth, HostSurfaces, IrradiancePipeline, PhotonPoints,
     PositionMaker, SplatStage, SurfaceMaps,
@@ -63,20 +63,21 @@ pub(super) fn all(watch: &Watch<'_>) {
 fn stages(watch: &Watch<'_>, surfaces: &SurfaceMaps, photons: &PhotonPoints) {
     let gl = &watch.gl;
     let radius = ChosenRadius::Fixed(2);
+    let settings = IrradianceSettings { radius: RadiusChoice::Fixed(2), ..IrradianceSettings::default() };
     let mut density = DensityStage::new(gl, SIZE).unwrap();
     watch.unchanged("DensityStage::new");
     density.add(surfaces, photons).unwrap();
     watch.unchanged("DensityStage::add");
     density.read_counts().unwrap();
-    density.read_power().unwrap();
-    watch.unchanged("DensityStage::read_power");
-    let mut splat = SplatStage::new(gl, SIZE, Kernel::Cone, true).unwrap();
+    density.power().read().unwrap();
+    watch.unchanged("PowerMap::read");
+    let mut splat = SplatStage::new(gl, SIZE, &settings).unwrap();
     watch.unchanged("SplatStage::new");
     splat.splat(surfaces, photons, radius).unwrap();
     watch.unchanged("SplatStage::splat");
-    let mut gather = GatherStage::new(gl, SIZE, Kernel::Cone, true, false).unwrap();
+    let mut gather = GatherStage::new(gl, SIZE, &settings).unwrap();
     watch.unchanged("GatherStage::new");
-    gather.gather(surfaces, &density, radius).unwrap();
+    gather.gather(surfaces, density.power(), radius).unwrap();
     watch.unchanged("GatherStage::gather");
     density.clear();
     splat.clear();

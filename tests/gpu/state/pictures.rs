@@ -69,26 +69,21 @@ fn stages(watch: &Watch<'_>, scene: &Scene, settings: &PictureSettings) {
     let mut renderer = Renderer::with_photons(&watch.gl, scene, settings, &photons).unwrap();
     renderer.warm_up(settings).unwrap();
     watch.unchanged("Renderer::warm_up");
-    let mut stages = renderer.into_stages(settings).unwrap();
-    watch.unchanged("Renderer::into_stages");
-    stages.count().unwrap();
-    watch.unchanged("Stages::count");
-    stages.read_counts().unwrap();
-    watch.unchanged("Stages::read_counts");
-    stages.search().unwrap();
-    watch.unchanged("Stages::search");
-    stages.read_radii().unwrap();
-    watch.unchanged("Stages::read_radii");
+    renderer.count().unwrap();
+    watch.unchanged("Renderer::count");
+    renderer.search(settings).unwrap();
+    watch.unchanged("Renderer::search");
     for radius in [RadiusChoice::Variable, RadiusChoice::Fixed(2)] {
-        stages.splat(radius).unwrap().read().unwrap();
-        watch.unchanged("Stages::splat");
+        for estimate in [Estimate::Splat, Estimate::Gather { count_correction: false }] {
+            let settings = PictureSettings { radius, estimate, ..*settings };
+            let irradiance = renderer.spread(&settings).unwrap().read().unwrap();
+            watch.unchanged("Renderer::spread");
+            renderer.account(&irradiance).unwrap();
+            watch.unchanged("Renderer::account");
+        }
     }
-    let irradiance = stages.gather().unwrap().read().unwrap();
-    watch.unchanged("Stages::gather");
-    stages.account(&irradiance).unwrap();
-    watch.unchanged("Stages::account");
-    stages.surfaces().read_position().unwrap();
-    stages.surfaces().read_normal().unwrap();
+    renderer.surfaces().read_position().unwrap();
+    renderer.surfaces().read_normal().unwrap();
     watch.unchanged("SurfaceMaps::read_normal");
 }
 

@@ -10,7 +10,7 @@ use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
 use varikernel::image::write_atomically;
 use varikernel::settings::{
-    Edges, Exactness, IrradianceSettings, Kernel, Method, Order, RadiusChoice, Search, Settings,
+    Edges, Estimate, Exactness, IrradianceSettings, Kernel, Method, Order, RadiusChoice, Search, Settings,
 };
 use varikernel::view::Camera;
 
@@ -100,7 +100,7 @@ impl Choices {
     pub(super) fn irradiance(&self) -> IrradianceSettings {
         let radius =
             if self.variable { RadiusChoice::Variable } else { RadiusChoice::Fixed(self.fixed_radius) };
-        IrradianceSettings { radius, search: self.search(), kernel: self.kernel }
+        IrradianceSettings { radius, radii: self.search(), kernel: self.kernel, estimate: Estimate::Splat }
     }
 
     /// The method, with an order that it has.

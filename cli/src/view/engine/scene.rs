@@ -71,7 +71,7 @@ impl SceneEngine {
             radii: live.radii().filter(|_| drawn),
             limited: live.limited().filter(|_| drawn),
             most_photons: round_up(40.0 * mean),
-            max_radius: irradiance.search.search.max_radius,
+            max_radius: irradiance.radii.search.max_radius,
         }
     }
 

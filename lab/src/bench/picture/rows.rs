@@ -7,14 +7,13 @@ use glam::UVec2;
 use varikernel::error::{Error, Result};
 use varikernel::gl::{Gl, Sample, Timer};
 use varikernel::image::Image;
-use varikernel::maps::CountBounds;
-use varikernel::maps::DensityMap;
+use varikernel::maps::{CountBounds, DensityMap, RadiusMap};
 use varikernel::measure::{PointPass, Unit, UnitPass};
 use varikernel::photon::{Emission, Ends, PhotonPoint, TraceSettings, trace_in_batches};
 use varikernel::reference::{self, Shown};
-use varikernel::render::{Renderer, Stages};
+use varikernel::render::Renderer;
 use varikernel::scene::Scene;
-use varikernel::settings::{PictureSettings, RadiusChoice, Search, Settings};
+use varikernel::settings::{Estimate, PictureSettings, RadiusChoice, Search, Settings};
 
 /// The fixed radius with the least RMSE in the glass box (`varikernel figures`), in pixels.
 const BEST_FIXED: u32 = 2;
@@ -77,7 +76,7 @@ pub(super) struct Rows<'a> {
     /// What is copied: the definition's counts.
     copied: DensityMap,
     points: PointPass,
-    stages: Stages,
+    renderer: Renderer,
     /// What is drawn, for the definitions.
     seen: Vec<PhotonPoint>,
     shown: Shown,
@@ -101,8 +100,8 @@ impl<'a> Rows<'a> {
         })?;
         seen.truncate(photons as usize);
         let points = PointPass::new(gl, &view)?;
-        let stages = Renderer::with_photons(gl, scene, &settings, &seen)?.into_stages(&settings)?;
-        let surfaces = stages.surfaces();
+        let renderer = Renderer::with_photons(gl, scene, &settings, &seen)?;
+        let surfaces = renderer.surfaces();
         let (position, normal) = (surfaces.read_position()?, surfaces.read_normal()?);
         let shown = Shown { view, position, normal };
         let counts = reference::photon_density(&shown, &seen);
@@ -117,7 +116,7 @@ impl<'a> Rows<'a> {
             copy,
             copied,
             points,
-            stages,
+            renderer,
             seen,
             shown,
             fragments,
@@ -132,17 +131,18 @@ impl<'a> Rows<'a> {
     }
 
     pub(super) fn run(&mut self, timer: &mut Timer, work: Work) -> Result<Sample> {
-        let stages = &mut self.stages;
+        let settings = self.settings_of(work);
+        let renderer = &mut self.renderer;
         let result = match work {
             Work::Copy => timer.time(|| (0..COPIES).try_for_each(|_| self.copy.run(&self.copied))).map(
                 |((), Sample { query, wall })| ((), Sample { query: query / COPIES, wall: wall / COPIES }),
             ),
-            Work::Points => timer.time(|| self.points.run(stages.photons())),
-            Work::Density => timer.time(|| stages.count()),
-            Work::Radius => timer.time(|| stages.search()),
-            Work::SplatVariable => timer.time(|| stages.splat(RadiusChoice::Variable).map(drop)),
-            Work::SplatFixed => timer.time(|| stages.splat(RadiusChoice::Fixed(BEST_FIXED)).map(drop)),
-            Work::Gather => timer.time(|| stages.gather().map(drop)),
+            Work::Points => timer.time(|| self.points.run(renderer.photons())),
+            Work::Density => timer.time(|| renderer.count()),
+            Work::Radius => timer.time(|| renderer.search(&settings)),
+            Work::SplatVariable | Work::SplatFixed | Work::Gather => {
+                timer.time(|| renderer.spread(&settings).map(drop))
+            }
             Work::Photons => {
                 let emission = Emission::new(self.scene, &self.trace)?;
                 let start = Instant::now();
@@ -152,6 +152,17 @@ impl<'a> Rows<'a> {
             }
         };
         result.map(|((), sample)| sample)
+    }
+
+    /// The picture whose light a row finds.
+    fn settings_of(&self, work: Work) -> PictureSettings {
+        match work {
+            Work::SplatFixed => PictureSettings { radius: RadiusChoice::Fixed(BEST_FIXED), ..self.settings },
+            Work::Gather => {
+                PictureSettings { estimate: Estimate::Gather { count_correction: false }, ..self.settings }
+            }
+            _ => self.settings,
+        }
     }
 
     /// Runs a row untimed, after all rows before it. Whether its answer is right.
@@ -164,7 +175,7 @@ impl<'a> Rows<'a> {
             Work::Copy => self.copy.read()? == reference::photon_density(&self.shown, &self.seen),
             Work::Points => (total(&self.points.read()?) - self.drawn_as_f64()).abs() <= self.strays(),
             Work::Density => {
-                let counts = self.stages.read_counts()?;
+                let counts = self.counts()?;
                 #[expect(
                     clippy::cast_possible_truncation,
                     clippy::cast_sign_loss,
@@ -177,13 +188,13 @@ impl<'a> Rows<'a> {
             }
             Work::Radius => {
                 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "counts")]
-                let counts = self.stages.read_counts()?.map(|count| count as u32);
+                let counts = self.counts()?.map(|count| count as u32);
                 let (min_photons, max_radius) = (self.settings.min_photons, self.settings.max_radius);
                 let search = Search { min_photons, max_radius, ..Settings::default().search };
-                self.stages.read_radii()? == reference::radius_by_table(&counts, search).radius
+                self.found_radii()? == reference::radius_by_table(&counts, search).radius
             }
-            Work::SplatVariable => self.is_whole(RadiusChoice::Variable, 0)?,
-            Work::SplatFixed => self.is_whole(RadiusChoice::Fixed(BEST_FIXED), 1)?,
+            Work::SplatVariable => self.is_whole(work, 0)?,
+            Work::SplatFixed => self.is_whole(work, 1)?,
             Work::Gather => self.is_gathered()?,
             Work::Photons => self.is_told()?,
         })
@@ -191,8 +202,8 @@ impl<'a> Rows<'a> {
 
     /// Whether some pixels gather what the definition says.
     fn is_gathered(&mut self) -> Result<bool> {
-        let irradiance = self.stages.gather()?.read()?;
-        let radii = self.stages.read_radii()?;
+        let irradiance = self.renderer.spread(&self.settings_of(Work::Gather))?.read()?;
+        let radii = self.found_radii()?;
         let power = reference::photon_power(&self.shown, &self.seen);
         let density = reference::photon_density(&self.shown, &self.seen);
         let UVec2 { x: width, y: height } = self.settings.size;
@@ -223,10 +234,18 @@ impl<'a> Rows<'a> {
         Ok(tally.photons == asked && ended == asked && tally.total() == landings && landings > 0)
     }
 
+    fn counts(&self) -> Result<Image<f32>> {
+        self.renderer.pipeline().density_stage().read_counts()
+    }
+
+    fn found_radii(&self) -> Result<Image<u32>> {
+        self.renderer.pipeline().radii().map_or_else(|| unreachable!("radii are variable"), RadiusMap::read)
+    }
+
     /// Whether a splat holds its photons' power.
-    fn is_whole(&mut self, radius: RadiusChoice, index: usize) -> Result<bool> {
-        let irradiance = self.stages.splat(radius)?.read()?;
-        let account = self.stages.account(&irradiance)?;
+    fn is_whole(&mut self, work: Work, index: usize) -> Result<bool> {
+        let irradiance = self.renderer.spread(&self.settings_of(work))?.read()?;
+        let account = self.renderer.account(&irradiance)?;
         self.fragments[index] = account.fragments;
         Ok(account.energy_error() < ENERGY)
     }
