@@ -109,7 +109,7 @@ mod capi;
 pub mod context;
 pub mod error;
 pub mod gl;
-#[doc = include_str!("guide.md")]
+#[doc = include_str!("../docs/guide.md")]
 pub mod guide {}
 pub mod image;
 pub mod light;
