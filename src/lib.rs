@@ -49,10 +49,11 @@
 //!
 //! # One search, many counters
 //! The thesis has one question, "how many photons lie in this box?", several answers to it, a search over
-//! radii and an edge rule. They stay apart: `glsl/radius.frag` holds the search and calls `count_in_box`,
-//! which each file of `glsl/count/` defines, and `glsl/common/enough.glsl` holds the edge rule. A program is
-//! one search and one counter. [`ShaderSource::resolved`](gl::ShaderSource::resolved) gives each as plain
-//! text, for engines with code of their own.
+//! radii and an edge rule. They stay apart: `glsl/radius/search/stepwise.frag` holds the search and calls
+//! `count_in_box`, which the `count` files of `glsl/radius/tables/` define, and `glsl/common/enough.glsl`
+//! holds the edge rule. A program is one search and one counter.
+//! [`ShaderSource::resolved`](gl::ShaderSource::resolved) gives each as plain text, for engines with code of
+//! their own.
 //!
 //! # Rooms
 //! Data flows from bottom to top: a module names only modules below it (checked by `tests/layers.rs`).
@@ -73,10 +74,10 @@
 //! | [`view`] | a camera and its pixels: where a place is seen, along which ray a pixel looks |
 //! | [`settings`], [`image`], [`error`] | plain data that every module may name |
 //!
-//! In [`radius`], [`radius::tables`] says how each method of the thesis counts a box, [`radius::planner`] which
-//! table and search suit a map, and [`radius::certificate`] how a result is proved. [`maps::exactness`] has the
-//! rules of what is exact. In [`light`], [`DensityStage`] counts photons, [`SplatStage`] spreads them, and
-//! [`GatherStage`] gathers them.
+//! In [`radius`], [`radius::tables`] says how each method of the thesis counts a box, [`radius::planner`]
+//! which table and search suit a map, and [`radius::certificate`] how a result is proved. [`maps::exactness`]
+//! has the rules of what is exact. In [`light`], [`DensityStage`] counts photons, [`SplatStage`] spreads
+//! them, and [`GatherStage`] gathers them.
 //!
 //! # The host's OpenGL state
 //! Each public call puts back what it touches, also when it fails; or, under [`StatePolicy::Defaults`], it
