@@ -31,9 +31,10 @@
 //! # Ok(())
 //! # }
 //! ```
-//! A pipeline can also plan each frame by the photons of the frames before it (`Planning::EachFrame` in the
-//! settings). From C and C++, the feature `capi` gives the same by `include/varikernel.h`; `examples/cpp` is
-//! a host. Without a host, `context::open` (features `egl` and `osmesa`) makes a headless context.
+//! With `Planning::EachFrame` in its settings, a pipeline plans each frame by the photons of the frames before
+//! it; without, it searches as the settings say. From C and C++, the feature `capi` gives the same by
+//! `include/varikernel.h`; `examples/cpp` is a host. Without a host, `context::open` (features `egl` and
+//! `osmesa`) makes a headless context.
 //!
 //! # Where to go on
 //! - [`guide`]: ten steps from photons or a density map to radii or light, with costs and the usual mistakes.
