@@ -31,7 +31,7 @@
 //! # Ok(())
 //! # }
 //! ```
-//! With `Planning::EachFrame` in its settings, a pipeline plans each frame by the photons of the frames before
+//! With `Planning::EachFrame` in its settings, a pipeline plans each frame by the photons of those before
 //! it; without, it searches as the settings say. From C and C++, the feature `capi` gives the same by
 //! `include/varikernel.h`; `examples/cpp` is a host. Without a host, `context::open` (features `egl` and
 //! `osmesa`) makes a headless context.
