@@ -1,9 +1,10 @@
-//! How wide must the filter be?
+//! Radius maps and light from photon density maps, in OpenGL 3.3 core.
 //!
-//! Photon mapping turns photons into light by averaging over a neighbourhood. A fixed radius blurs caustics or leaves
-//! walls patchy; this library finds, for every pixel of a photon density map, the smallest box radius that holds at
-//! least n photons, with textures and fragment shaders alone: OpenGL 3.3 core, no compute shaders, no extensions. It
-//! reproduces E. W. Bjønnes' thesis (Oslo 2010, "the thesis" below) and is exact where the thesis rounds.
+//! Photon mapping turns photons into light by averaging over a neighbourhood. A fixed radius blurs caustics
+//! or leaves walls patchy; this library finds, for every pixel of a photon density map, the smallest box
+//! radius that holds at least n photons, with textures and fragment shaders alone: no compute shaders, no
+//! extensions. It reproduces E. W. Bjønnes' thesis (Oslo 2010, "the thesis" below) and is exact where the
+//! thesis rounds.
 //!
 //! # Use
 //! ```no_run
@@ -30,78 +31,102 @@
 //! # Ok(())
 //! # }
 //! ```
-//! From C and C++, the feature `capi` gives the same by `include/varikernel.h`; `examples/cpp` is a host.
-//! The [`guide`] goes through all of it in ten steps, from photons or a density map to radii or light, with the costs.
-//! Without a host, `context::open` (features `egl` and `osmesa`) makes a headless context.
+//! With `Planning::EachFrame` in its settings, a pipeline plans each frame by the photons of those before
+//! it; without, it searches as the settings say. From C and C++, the feature `capi` gives the same by
+//! `include/varikernel.h`; `examples/cpp` is a host. Without a host, `context::open` (features `egl` and
+//! `osmesa`) makes a headless context.
 //!
-//! # The idea that keeps it small
-//! The thesis has one question, "how many photons lie in this box?", several answers to it, a search over radii and an
-//! edge rule. They stay apart: `glsl/radius.frag` holds the search and calls `count_in_box`, which each file of
-//! `glsl/count/` defines, and `glsl/common/enough.glsl` holds the edge rule. A program is one search and one counter.
-//! [`ShaderSource::resolved`](gl::ShaderSource::resolved) gives each as plain text, for engines with code of their own.
+//! # Where to go on
+//! - [`guide`]: ten steps from photons or a density map to radii or light, with costs and the usual mistakes.
+//! - `docs/engines.md`: the interface in Rust, C and GLSL, and the features.
+//! - `docs/methods.md`: how radii are found, the variants, which sums are exact.
+//! - `docs/pictures.md`: how a picture is made, the window, files.
+//! - `docs/results.md`: what was measured. `docs/devices.md`: renderers and drivers.
+//! - [`gl::state_contract`]: every OpenGL state that is touched.
+//!
+//! Two packages in the same repository use this library: `varikernel-lab` (`lab/`) measures, and
+//! `varikernel-cli` (`cli/`) is the program `varikernel`, a file or folder for each verb. Neither is needed
+//! by a host.
+//!
+//! # One search, many counters
+//! The thesis has one question, "how many photons lie in this box?", several answers to it, a search over
+//! radii and an edge rule. They stay apart: `glsl/radius/search/stepwise.frag` holds the search and calls
+//! `count_in_box`, which the `count` files of `glsl/radius/tables/` define, and `glsl/common/enough.glsl`
+//! holds the edge rule. A program is one search and one counter.
+//! [`ShaderSource::resolved`](gl::ShaderSource::resolved) gives each as plain text, for engines with code of
+//! their own.
 //!
 //! # Rooms
-//! Data flows from top to bottom, and a module names only modules below it (checked by `tests/layers.rs`):
+//! Data flows from bottom to top: a module names only modules below it (checked by `tests/layers.rs`).
 //!
 //! | module | what it holds |
 //! |---|---|
-//! | `cli`, `main` | the program, built on the public library: one file a verb |
 //! | `capi` | the C interface of `include/varikernel.h`: handles, plain structs, status codes |
-//! | [`measure`] | how right and how fast a result is: differences, errors of pictures, timing runs (`bench`), rivals on the processor (`rivals`), the thesis's tables and claims (`thesis`), both together (`reproduce`), a page of them (`report`), run time against error (`study`), promises about numbers put to the test (`stress`) |
-//! | `render` | scene in, picture out: the stages of a picture in order, soft shadows, what is seen in mirrors and through glass; `render::Live`, a picture that gets better step by step |
-//! | `bounce_map`, `gbuffer`, `shadow_map`, `shade` | a stage of a scene's picture each: what photons meet first, what pixels show, direct light, light added up |
-//! | `cube_map` | what is nearest around a place, rasterised |
-//! | [`irradiance`] | [`IrradiancePipeline`]: photons and a g-buffer in, irradiance out |
-//! | `density`, `splat` | its stages beside the radii: photons counted, kernels drawn |
-//! | `position` | a host's depth buffer to the places that its pixels show |
-//! | `adaptive` | [`AdaptivePipeline`]: plans each frame by the photons of the ones before |
-//! | [`planner`] | which table, build and search suit a map |
-//! | [`pipeline`] | the stages in order; what a host calls |
-//! | [`certificate`] | proof that a radius map is the definition's, without computing that |
-//! | `radius` | density map and structure in, radius map out: stepwise as the thesis, or by brackets |
-//! | [`structure`] | brute force, mipmaps, pyramid, summed-area table: a section of the thesis each |
-//! | `driver_limits` | what software renderers would silently get wrong |
-//! | [`frame`] | what a host's frame brings, and what differs from the one before |
-//! | [`maps`], `mask` | what flows between the stages, each with its unit; which pixels need a radius |
-//! | [`exactness`] | which sums fit which storage, decided before computing |
+//! | `render` | scene in, picture out, stage by stage; `render::Live`, a picture that gets better by steps |
+//! | [`measure`] | what `varikernel-lab` needs of the inside: units of time, approximations to compare with |
+//! | [`light`] | [`IrradiancePipeline`]: photons and a g-buffer in, irradiance out; its stages apart |
+//! | [`radius`] | [`RadiusPipeline`]: density map in, radius map out; tables, search, planner, certificate |
+//! | [`maps`] | what flows between the stages, each with its unit; what changed; which sums are exact |
 //! | [`reference`](mod@reference) | the definition: the same in plain Rust, without OpenGL |
-//! | `photon` | scene in, photons out: traced on the CPU, landing after landing, with statistics |
+//! | [`photon`] | a photon as a vertex; scene in, photons out: traced on the CPU, landing after landing |
 //! | `scene` | scene files: camera, lights, materials, triangles and spheres; ray casting |
-//! | `photon_point`, [`view`] | a photon as a vertex; a camera and its pixels: where a place is seen, along which ray a pixel looks |
-//! | `synth` | seeded test maps |
 //! | `context` | contexts: EGL devices and OSMesa without a window, and a window's |
-//! | [`gl`] | programs, textures, passes, timers, saved state; with `context` and `capi` the only unsafe code |
+//! | [`gl`] | programs, textures, passes, timers, saved state; `gl`, `context` and `capi` alone are unsafe |
+//! | [`view`] | a camera and its pixels: where a place is seen, along which ray a pixel looks |
 //! | [`settings`], [`image`], [`error`] | plain data that every module may name |
 //!
+//! In [`radius`], [`radius::tables`] says how each method of the thesis counts a box, [`radius::planner`]
+//! which table and search suit a map, and [`radius::certificate`] how a result is proved. [`maps::exactness`]
+//! has the rules of what is exact. In [`light`], [`DensityStage`] counts photons, [`SplatStage`] spreads
+//! them, and [`GatherStage`] gathers them.
+//!
 //! # The host's OpenGL state
-//! Each public call puts back what it touches, also when it fails; or, under [`StatePolicy::Defaults`], it starts from
-//! OpenGL's default state, leaves it behind, and asks the driver for nothing. The page [`gl::state_contract`] lists all
-//! that is touched, and says what has to be current, what contexts share, and what of a host's queries.
+//! Each public call puts back what it touches, also when it fails; or, under [`StatePolicy::Defaults`], it
+//! starts from OpenGL's default state, leaves it behind, and asks the driver for nothing. The page
+//! [`gl::state_contract`] lists all that is touched, and says what has to be current, what contexts share,
+//! and what of a host's queries.
 //!
 //! # Memory, sizes, and the end of a context
 //! [`RadiusPipeline::memory_required`] says how many bytes a pipeline takes before there is a context, and
-//! [`RadiusPipeline::resize`] moves one to another size of maps without compiling anything. GL_OUT_OF_MEMORY is
-//! [`Error::OutOfMemory`]: what the call had made is freed, and what was there before is still good.
+//! [`RadiusPipeline::resize`] moves one to another size of maps without compiling anything. GL_OUT_OF_MEMORY
+//! is [`Error::OutOfMemory`]: what the call had made is freed, and what was there before is still good.
 //!
-//! Objects may be dropped in any order while the context is current. A host that destroys its context first calls
-//! [`Gl::abandon`] before: from then on nothing calls OpenGL, drops delete nothing, and calls answer [`Error::ContextLost`], as
-//! they do when the driver reports GL_CONTEXT_LOST. Dropping without a current context and without that word does
-//! nothing on Mesa, but may crash on drivers whose commands belong to a context, as on Windows.
+//! Objects may be dropped in any order while the context is current. A host that destroys its context first
+//! calls [`Gl::abandon`] before: from then on nothing calls OpenGL, drops delete nothing, and calls answer
+//! [`Error::ContextLost`], as they do when the driver reports GL_CONTEXT_LOST. Dropping without a current
+//! context and without `abandon` does nothing on Mesa, but may crash on drivers whose commands belong to a
+//! context, as on Windows.
 //!
-//! [`gl::StageTimes`] tells how long each pass takes on the GPU, without waiting and beside a host's own GL_TIME_ELAPSED query.
+//! [`gl::StageTimes`] tells how long each pass takes on the GPU, without waiting and beside a host's own
+//! GL_TIME_ELAPSED query.
 //!
 //! # Glossary
-//! | word | meaning |
-//! |---|---|
-//! | n, `min_photons` | photons that a box has to hold; "MP" in the thesis's listings |
-//! | MR, `max_radius` | the radius at which a search ends |
-//! | R, radius | half the side of a box without its middle pixel: the box of radius r has side 2 r + 1 |
-//! | S | photons of a box that are inside the map |
-//! | T, I | area of a box, and of its part inside the map |
-//! | density map | photons per pixel |
-//! | radius map | R per pixel: the smallest r >= 1 whose box holds n photons, MR where none does |
-//! | limited | a pixel whose box of radius MR still holds too few |
-//! | SAT | summed-area table |
+//! | word | also called | meaning |
+//! |---|---|---|
+//! | n, `min_photons` | "MP" in the thesis, k of k nearest neighbours | photons that a box has to hold |
+//! | MR, `max_radius` | | the radius at which a search ends |
+//! | R, radius | bandwidth, filter width | half a box's side less its middle pixel: the side is 2 r + 1 |
+//! | S | | photons of a box that are inside the map |
+//! | T, I | | area of a box, and of its part inside the map |
+//! | landing | hit, deposit, photon record | where a photon meets a diffuse surface, with its power |
+//! | density map | photon counts, histogram | photons per pixel |
+//! | radius map | adaptive bandwidth | R per pixel: the smallest r >= 1 whose box holds n photons, else MR |
+//! | limited | saturated | a pixel whose box of radius MR still holds too few |
+//! | SAT | summed-area table, integral image | sums of all pixels up to each: a box takes four texels |
+//! | pyramid | summed mipmap, quadtree of sums | sums of 2 x 2, 4 x 4, ... pixels |
+//! | kernel | filter, footprint | how a photon's light falls off with distance |
+//! //! | Silverman's kernel | biweight, quartic | (1 - d²)², with d the distance in radii |
+//! | variable radii | nearest-n, k-nearest-neighbour density estimation | kernels that hold n photons each |
+//! | spread | splat, scatter | each photon is drawn over the pixels around it |
+//! | gather | | each pixel collects the photons around it |
+//! | surfaces | g-buffer | place, normal and surface number of each pixel |
+//! | changed rectangle | dirty rectangle, damage | what differs from the frame before |
+//! | mask | stencil | the pixels that need a radius |
+//! | census | | the photons of each tile of 64 x 64 pixels, by which a search is planned |
+//! | definition | oracle, ground truth | what results are compared with: [`reference`](mod@reference) |
+//! | copy, probe | unit of time | passes that read and write one texel, and that read four |
+//! | rival | baseline | the same radii by plain code on the processor, in `varikernel-lab` |
+//! | host | engine, application | the program whose OpenGL context is used |
 
 #[cfg(feature = "capi")]
 mod capi;
@@ -109,7 +134,7 @@ mod capi;
 pub mod context;
 pub mod error;
 pub mod gl;
-#[doc = include_str!("guide.md")]
+#[doc = include_str!("../docs/guide.md")]
 pub mod guide {}
 pub mod image;
 pub mod light;

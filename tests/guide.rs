@@ -6,7 +6,7 @@ use varikernel::glam::UVec2;
 use varikernel::settings::{IrradianceSettings, Method, RadiusChoice, Settings};
 use varikernel::{IrradiancePipeline, RadiusPipeline};
 
-const GUIDE: &str = include_str!("../src/guide.md");
+const GUIDE: &str = include_str!("../docs/guide.md");
 
 /// MiB with one decimal, of 1080p and 4K.
 fn row(what: &str, bytes: impl Fn(UVec2) -> u64) -> String {

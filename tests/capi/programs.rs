@@ -24,7 +24,7 @@ fn work_folder() -> PathBuf {
     folder
 }
 
-/// The shared library, built as the README says, once for all tests; its folder.
+/// The shared library, built as `docs/engines.md` says, once for all tests; its folder.
 fn library() -> &'static Path {
     static FOLDER: OnceLock<PathBuf> = OnceLock::new();
     FOLDER.get_or_init(|| {
@@ -54,7 +54,7 @@ fn compiler(program: &str, standard: &str) -> Command {
     command
 }
 
-/// Compiles a program against the library, as the README says, and runs it.
+/// Compiles a program against the library, as `examples/cpp/README.md` says, and runs it.
 fn compile_and_run(mut compiler: Command, source: &str) -> String {
     let library = library();
     let program = work_folder().join(Path::new(source).file_stem().unwrap());

@@ -20,7 +20,7 @@ pub const PROMISES: [Promise; 15] = [
     Promise {
         id: "accepted-is-exact",
         text: "what is accepted equals the definition, pixel for pixel",
-        stated_in: "README, Methods; exactness",
+        stated_in: "docs/methods.md; exactness",
     },
     Promise {
         id: "default-is-exact",
@@ -30,7 +30,7 @@ pub const PROMISES: [Promise; 15] = [
     Promise {
         id: "refused-first",
         text: "what could round or wrap is refused: by the plan, and by a render in place of its map",
-        stated_in: "README, Methods; exactness::plan",
+        stated_in: "docs/methods.md; exactness::plan",
     },
     Promise {
         id: "u32-wraps",
@@ -77,12 +77,12 @@ pub const PROMISES: [Promise; 15] = [
     Promise {
         id: "same-bits",
         text: "every renderer gives the definition's radii, bit for bit",
-        stated_in: "README, Devices",
+        stated_in: "docs/devices.md",
     },
     Promise {
         id: "same-bits-again",
         text: "so do 1, 2 and many threads, however often",
-        stated_in: "README, Devices",
+        stated_in: "docs/devices.md",
     },
 ];
 
