@@ -39,9 +39,11 @@ pub(super) fn get(name: &str) -> Option<String> {
     env::var_os(name).map(|value| value.to_string_lossy().into_owned())
 }
 
-/// What the environment sets of all that drivers of OpenGL, EGL and Vulkan read, as `NAME=value`, in alphabetical order.
+/// What the environment sets of all that drivers of OpenGL, EGL and Vulkan read, as `NAME=value`, in
+/// alphabetical order.
 ///
-/// Some values end a process inside of the driver; a program that wants to live tries a device in another process then.
+/// Some values crash the process inside of the driver; a program that has to survive that tries a device in
+/// another process first.
 #[must_use]
 pub fn driver_variables() -> Vec<String> {
     let mut found: Vec<_> = env::vars_os()
@@ -63,7 +65,7 @@ pub(super) fn obstacle(get: Get<'_>) -> Option<Refusal> {
     version_override(get).or_else(|| driver(get)).or_else(|| no_llvm(get))
 }
 
-/// As [`obstacle`], for OSMesa, which knows no other drivers.
+/// As [`obstacle`], for OSMesa, which has no other drivers.
 #[cfg(feature = "osmesa")]
 pub(super) fn obstacle_of_osmesa(get: Get<'_>) -> Option<Refusal> {
     let name = "GALLIUM_DRIVER";
@@ -93,7 +95,8 @@ fn without(symptom: &str, set: &[String]) -> Refusal {
     )
 }
 
-/// A version below 3.3, read as Mesa reads it: numbers first, then perhaps FC or COMPAT. What is no number is ignored.
+/// A version below 3.3, read as Mesa reads it: numbers first, then perhaps FC or COMPAT. What is no number is
+/// ignored.
 fn version_override(get: Get<'_>) -> Option<Refusal> {
     let of_opengl = |value: &str| {
         let (major, rest) = value.split_once('.')?;
@@ -123,7 +126,7 @@ fn leading(text: &str) -> Option<u32> {
     text[..digits.unwrap_or(text.len())].parse().ok()
 }
 
-/// A driver that is asked for by name and is none of Mesa's software renderers.
+/// A driver that is set by name and is none of Mesa's software renderers.
 #[cfg(any(all(feature = "egl", not(target_vendor = "apple")), feature = "window"))]
 fn driver(get: Get<'_>) -> Option<Refusal> {
     let (name, value) = DRIVER.iter().find_map(|name| {
@@ -161,7 +164,7 @@ fn no_llvm(get: Get<'_>) -> Option<Refusal> {
 mod tests {
     use super::*;
 
-    /// What `check` says where `variables` are set.
+    /// What `check` returns where `variables` are set.
     fn with(variables: &[(&str, &str)], check: fn(Get<'_>) -> Option<Refusal>) -> Option<Refusal> {
         check(&|name| variables.iter().find(|(set, _)| *set == name).map(|(_, value)| (*value).to_owned()))
     }

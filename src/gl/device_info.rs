@@ -1,8 +1,8 @@
-//! What a context says of itself: names, versions, limits.
+//! What a context reports about itself: names, versions, limits.
 
 use glow::HasContext as _;
 
-/// What a context says of itself.
+/// What a context reports about itself.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
@@ -32,7 +32,7 @@ pub struct DeviceInfo {
 }
 
 impl DeviceInfo {
-    /// Asks the current context.
+    /// Reads them from the current context.
     pub(super) fn of(glow: &glow::Context) -> Self {
         // SAFETY: the context is current; these are states of every 3.x context.
         unsafe {
