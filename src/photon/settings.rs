@@ -13,8 +13,8 @@ pub struct TraceSettings {
     pub bounces: u32,
     /// The same seed gives the same photons.
     pub seed: u64,
-    /// Whether a photon ends at a landing by chance, in proportion to what the surface absorbs, instead of going on with
-    /// less power. The mean is the same.
+    /// Whether a photon ends at a landing by chance, in proportion to what the surface absorbs, instead of
+    /// going on with less power. The mean is the same.
     pub russian_roulette: bool,
 }
 

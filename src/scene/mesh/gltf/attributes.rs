@@ -1,4 +1,4 @@
-//! What a primitive says of its vertices, as it stands in the file.
+//! The attributes of a primitive's vertices, as they are in the file.
 
 use glam::{Vec2, Vec3};
 use gltf_json::mesh::{Primitive, Semantic};
@@ -95,7 +95,8 @@ impl Attributes<'_> {
         Ok(inside)
     }
 
-    /// Places in a texture, as KHR_texture_transform moves them; none where the primitive lacks the set that they count in.
+    /// Places in a texture, as KHR_texture_transform moves them; none where the primitive lacks the set that
+    /// they count in.
     pub(super) fn coordinates(&self, info: &Info, vertices: usize) -> Result<Option<Vec<Vec2>>, Problem> {
         let transform = info.extensions.as_ref().and_then(|extensions| extensions.texture_transform.as_ref());
         let set = transform.and_then(|transform| transform.tex_coord).unwrap_or(info.tex_coord);

@@ -94,8 +94,8 @@ impl Faces {
         (uses, self.list.iter().find(|face| face.material.is_none()).map(|face| face.line))
     }
 
-    /// The faces as parts, in the order of the file: one for all faces in a row that are alike. `material` gives the index of a
-    /// use's material.
+    /// The faces as parts, in the order of the file: one for all faces in a row that are alike. `material`
+    /// gives the index of a use's material.
     ///
     /// # Errors
     /// If a face names a vertex that is not in the file, or can't be cut.
