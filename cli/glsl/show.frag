@@ -1,5 +1,5 @@
-// What the window shows: one view of the maps, or two beside a line; row 0 is the top.
-// Views: 0 radiance, tone-mapped; 1 density and 2 radius in colours; 3 limited pixels marked; 4 error in colours.
+// What the window shows: one view of the maps, or two beside a line; row 0 is the top. Views: 0 radiance,
+// tone-mapped; 1 density and 2 radius in colours; 3 limited pixels marked; 4 error in colours.
 uniform ivec2 map_size;
 uniform vec2 origin;      // of the picture on the canvas, in canvas pixels
 uniform float scale;      // canvas pixels a pixel of the maps

@@ -1,7 +1,9 @@
-// A kernel: a disc on a surface, flat as the surface is, whose weight falls from its middle to its edge (thesis 2.6.2).
+// A kernel: a disc on a surface, flat as the surface is, whose weight falls from its middle to its edge
+// (thesis 2.6.2).
 //
-// A box of (2 R + 1)^2 pixels, as the radius map counts them, covers some area of the surface, and the disc has the same:
-// so it holds about as many photons. It is at least as wide as a pixel wherever it is seen edge-on.
+// A box of (2 R + 1)^2 pixels, as the radius map counts them, covers some area of the surface, and the disc
+// has the same: so it holds about as many photons. It is at least as wide as a pixel wherever it is seen
+// edge-on.
 
 // The kernel's extent along the normal, as a share of its radius.
 const float THICKNESS = 0.2;
@@ -13,7 +15,8 @@ struct Kernel {
     vec3 position;
     vec3 normal;
     float number;
-    // Axes over their half lengths: a place is inside where the squares of its three products with them sum to less than 1.
+    // Axes over their half lengths: a place is inside where the squares of its three products with them sum
+    // to less than 1.
     vec3 across;
     vec3 along;
     vec3 through;
