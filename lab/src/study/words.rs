@@ -1,4 +1,4 @@
-//! What the numbers of a study say, in sentences.
+//! The conclusions of a study, in sentences.
 
 use super::density::{DensityRow, Width};
 use super::pictures::{EqualPhotons, EqualTime, Metric, Winner};
@@ -77,7 +77,7 @@ pub(super) fn stopping_rule(rows: &[DensityRow]) -> Vec<String> {
     words
 }
 
-/// A box, for people.
+/// A box, to show.
 pub(super) fn width(row: &DensityRow) -> String {
     match (row.width, row.corrected) {
         (Width::Holding(n), false) => format!("n = {n}"),

@@ -59,12 +59,12 @@ impl LargerSmaller {
     }
 }
 
-/// All that claims are judged by; what is empty was not looked at.
+/// All that claims are judged by; what is empty was not measured.
 #[derive(Clone, Debug, Default)]
 pub struct Evidence {
     /// Fetches and stack depths.
     pub pyramid_costs: Vec<PyramidCost>,
-    /// What each fault spoils, on [`Evidence::map`] and on one that hides none.
+    /// What each fault spoils, on [`Evidence::map`] and on one on which each fault shows.
     pub faults: Vec<FaultRow>,
     /// What a table in f32 spoils on it.
     pub floats: Vec<FloatRow>,

@@ -1,4 +1,5 @@
-//! Files of results with numbers that no run would write: they are refused, or told as what they are, and never a panic.
+//! Files of results with numbers that no run would write: they are refused, or reported as they are, and
+//! never cause a panic.
 
 use std::path::{Path, PathBuf};
 

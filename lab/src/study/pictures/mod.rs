@@ -1,13 +1,15 @@
-//! Errors of pictures: variable radii against the best fixed radius (thesis 2.5, 5.1), for the same photons and for the same
-//! time.
+//! Errors of pictures: variable radii against the best fixed radius (thesis 2.5, 5.1), for the same photons
+//! and for the same time.
 //!
-//! Each scene has a reference of many photons without kernels, of other seeds. Against it stand pictures of some numbers of
-//! photons, with some n and some fixed radii, of some seeds each; all pictures of a seed are drawn from the same photons. The
-//! fixed radius is chosen knowing the answer, for each scene, number of photons and metric anew, from a sweep that goes on until
-//! the best is not at its end. So the comparison is kind to the fixed radius: in practice nobody knows it.
+//! Each scene has a reference of many photons without kernels, of other seeds. Against it stand pictures of
+//! some numbers of photons, with some n and some fixed radii, of some seeds each; all pictures of a seed are
+//! drawn from the same photons. The fixed radius is chosen knowing the answer, for each scene, number of
+//! photons and metric anew, from a sweep that goes on until the best is not at its end. So the comparison
+//! favours the fixed radius: in practice the best one is unknown.
 //!
-//! RMSE and relative MSE are of indirect light, which is what photons bring. SSIM and FLIP are of the whole picture. The
-//! reference's own noise is in all errors, of variable and fixed radii alike, and draws their ratio towards 1.
+//! RMSE and relative MSE are of indirect light, which photons make. SSIM and FLIP are of the whole picture.
+//! The reference's own noise is in all errors, of variable and fixed radii alike, and draws their ratio
+//! towards 1.
 
 mod compare;
 mod equal_time;
@@ -37,13 +39,13 @@ pub struct PictureStudy {
     pub size: [u32; 2],
     /// Photons that leave the lights.
     pub photons: Vec<u32>,
-    /// n of variable radii that are tried at least; the sweep goes on, by twos, where the best is at its end. The default of
-    /// [`PictureSettings`] is compared on its own if it is among them.
+    /// n of variable radii that are tried at least; the sweep goes on, by twos, where the best is at its end.
+    /// The default of [`PictureSettings`] is compared on its own if it is among them.
     pub min_photons: Vec<u32>,
     /// MR of variable radii, in pixels.
     pub max_radius: u32,
-    /// Fixed radii in pixels, increasing: they are tried one after the other until each metric has its best and one more; the
-    /// sweep goes on where the best is at its end.
+    /// Fixed radii in pixels, increasing: they are tried one after the other until each metric has its best
+    /// and one more; the sweep goes on where the best is at its end.
     pub fixed: Vec<u32>,
     /// Falloffs; variable and fixed radii are compared for each.
     pub kernels: Vec<Kernel>,
