@@ -1,4 +1,4 @@
-//! `varikernel glsl`: our shaders as text, for engines that bring their own code.
+//! `varikernel glsl`: our shaders as text, for engines with code of their own.
 
 use std::fs;
 use std::io::Write as _;
@@ -18,8 +18,8 @@ use super::{Outcome, output};
 
 /// Print shaders as one variant compiles them, with a table of what they read and write.
 ///
-/// For those who bring their own engine code. Conditions are decided and defines put in; the options choose the variant, as
-/// they do for `radius` and `render`. No OpenGL is needed.
+/// For engines with code of their own. Conditions are decided and defines put in; the options choose the
+/// variant, as they do for `radius` and `render`. No OpenGL is needed.
 #[derive(Debug, clap::Args)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
 pub(crate) struct Args {
@@ -35,8 +35,9 @@ pub(crate) struct Args {
     #[arg(long, value_enum, default_value_t = Stages::Both)]
     stage: Stages,
 
-    /// Write instead of printing: with NAME and one --stage a file, with NAME and both stages a folder for two; without NAME
-    /// a folder for all shaders of the variant, and for shaders.json, their tables. A folder is made if it is missing.
+    /// Write instead of printing: with NAME and one --stage a file, with NAME and both stages a folder for
+    /// two; without NAME a folder for all shaders of the variant, and for shaders.json, their tables. A
+    /// folder is made if it is missing.
     #[arg(short, long, value_name = "FILE|FOLDER")]
     output: Option<PathBuf>,
 
@@ -93,7 +94,7 @@ enum Density {
     R32f,
 }
 
-/// A shader for machines.
+/// A shader in JSON.
 #[derive(Serialize)]
 struct Shader {
     name: String,
@@ -181,7 +182,7 @@ fn named<'a>(sources: &'a [ShaderSource], name: &str) -> Result<&'a ShaderSource
     })
 }
 
-/// Names that hold the word or are spelled much like it, the nearest first.
+/// Names that contain `name` or are spelled much like it, the nearest first.
 fn near_matches(sources: &[ShaderSource], word: &str) -> Vec<String> {
     let likeness = |name: &str| {
         if name.contains(word) { 1.0 } else { strsim::normalized_damerau_levenshtein(name, word) }

@@ -16,7 +16,8 @@ pub(super) struct MethodOptions {
     #[arg(allow_negative_numbers = true)]
     pub(super) min_photons: u32,
 
-    /// MR: the radius at which the search ends, in pixels, 1 to 32767; pixels that find too few photons get it.
+    /// MR: the radius at which the search ends, in pixels, 1 to 32767; pixels that find too few photons get
+    /// it.
     #[arg(short = 'r', long, default_value_t = 32, value_name = "MR", value_parser = whole_checked_later(1..=u32::MAX))]
     #[arg(allow_negative_numbers = true)]
     pub(super) max_radius: u32,
@@ -25,18 +26,18 @@ pub(super) struct MethodOptions {
     #[arg(long, value_enum, default_value_t = Edges::Scale)]
     edges: Edges,
 
-    /// How photons in a box are counted (thesis 3.2 to 3.4): auto lets a planner choose by the map, or name one of
-    /// brute-force, naive-mipmap, averaged-mipmap, pyramid, sat.
+    /// How photons in a box are counted (thesis 3.2 to 3.4): auto lets a planner choose by the map, or name
+    /// one of brute-force, naive-mipmap, averaged-mipmap, pyramid, sat.
     #[arg(long, default_value = "auto", value_parser = method, value_name = "METHOD")]
     method: MethodChoice,
 
-    /// Order in which radii are tried (thesis 3.5); the naive mipmap has its own. [default: the planner's; with a named
-    /// method, bracketed for sat in whole numbers without faults, else binary]
+    /// Order in which radii are tried (thesis 3.5); the naive mipmap has its own. [default: the planner's;
+    /// with a named method, bracketed for sat in whole numbers without faults, else binary]
     #[arg(long, value_enum)]
     search: Option<Order>,
 
-    /// How the summed-area table is built: by doubling (thesis 4.2) or by a scan. [default: scan; with a fault or a float:
-    /// doubling]
+    /// How the summed-area table is built: by doubling (thesis 4.2) or by a scan. [default: scan; with a
+    /// fault or a float: doubling]
     #[arg(long, value_enum)]
     sat_build: Option<SatBuild>,
 
@@ -45,8 +46,9 @@ pub(super) struct MethodOptions {
     #[arg(long, value_enum)]
     sat_samples: Option<SatSamples>,
 
-    /// Number in which sums are kept; u16 is for the summed-area table, where no box holds 2^16 photons; f16 (up to 2^11 in
-    /// all), f32-minus-mean and f32-minus-whole-mean (never proved, so with --allow-inexact only) are for measurements of it.
+    /// Number in which sums are kept; u16 is for the summed-area table, where no box holds 2^16 photons; f16
+    /// (up to 2^11 in all), f32-minus-mean and f32-minus-whole-mean (never proved, so with --allow-inexact
+    /// only) are for measurements of it.
     #[arg(long, value_enum, default_value_t = Storage::U32)]
     storage: Storage,
 
@@ -58,7 +60,8 @@ pub(super) struct MethodOptions {
     #[arg(long, value_enum, default_value_t = Matching::Bits)]
     matching: Matching,
 
-    /// A variation of the method that the thesis leaves to future work (6.2.5, 6.3.5, 6.4.5); the radii stay the same.
+    /// A variation of the method that the thesis leaves to future work (6.2.5, 6.3.5, 6.4.5); the radii stay
+    /// the same.
     #[arg(long, value_enum)]
     variation: Option<Variation>,
 

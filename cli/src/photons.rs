@@ -16,9 +16,10 @@ use super::{Outcome, output};
 
 /// Trace photons through a scene and write their diffuse landings.
 ///
-/// Each landing has its position in scene units, the direction from which the photon came, its power before absorption
-/// (linear RGB), the surface's normal and name, the number of landings before (from 0), and whether glass has refracted
-/// the photon on its way. The result depends on the seed alone, not on the number of threads.
+/// Each landing has its position in scene units, the direction from which the photon came, its power before
+/// absorption (linear RGB), the surface's normal and name, the number of landings before (from 0), and
+/// whether glass has refracted the photon on its way. The result depends on the seed alone, not on the number
+/// of threads.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
     /// A scene file, or one of: cornell-glass, cornell-boxes, cornell-empty, mirror-ring, water.
@@ -42,7 +43,8 @@ pub(crate) struct Args {
     #[arg(long, default_value_t = 1, value_parser = whole(0..=u64::MAX), allow_negative_numbers = true)]
     seed: u64,
 
-    /// End photons by chance, in proportion to what a surface absorbs, instead of dimming them; the mean is the same.
+    /// End photons by chance, in proportion to what a surface absorbs, instead of dimming them; the mean is
+    /// the same.
     #[arg(long)]
     russian_roulette: bool,
 

@@ -25,17 +25,18 @@ use super::{Outcome, device};
 
 /// Time the methods, check their answers, and rank them.
 ///
-/// Every case is one full-screen job: "build" fills the intermediate structure, "search" finds the radii in it, "frame"
-/// is both. Times are medians of GPU time queries, and "copies" are the same in passes that read and write each
-/// texel once. A method whose answer is wrong gets no rank.
+/// Every case is one full-screen job: "build" fills the intermediate structure, "search" finds the radii in
+/// it, "frame" is both. Times are medians of GPU time queries, and "copies" are the same in passes that read
+/// and write each texel once. A method whose answer is wrong gets no rank.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
-    /// Time a fixed set of cases, and judge its targets. Of the choices below, `fast` takes --sizes, --build-sizes,
-    /// --rivals and --protocol, `picture` one size and --photons.
+    /// Time a fixed set of cases, and judge its targets. Of the choices below, `fast` takes --sizes,
+    /// --build-sizes, --rivals and --protocol, `picture` one size and --photons.
     #[arg(long, value_enum, conflicts_with_all = FIXED_BY_SUITE)]
     suite: Option<SuiteName>,
 
-    /// Sizes of synthetic maps: sides, or WIDTHxHEIGHT; files have their own [default for suites: 1024 and 512].
+    /// Sizes of synthetic maps: sides, or WIDTHxHEIGHT; files have their own [default for suites: 1024 and
+    /// 512].
     #[arg(long, value_delimiter = ',', default_value = "64,128,256,512", value_parser = parse_size,
           default_value_ifs([("suite", "fast", "1024"), ("suite", "picture", "512")]))]
     sizes: Vec<UVec2>,
@@ -87,22 +88,23 @@ pub(crate) struct Args {
     #[arg(long, value_enum, value_delimiter = ',', default_value = "2,4")]
     sat_samples: Vec<SatSamples>,
 
-    /// Numbers in which summed-area tables are kept; each is left out where it is not proved exact (u16 where a box could
-    /// hold 2^16 photons, f16 past 2^11 in all, f32-minus-mean and f32-minus-whole-mean always).
+    /// Numbers in which summed-area tables are kept; each is left out where it is not proved exact (u16 where
+    /// a box could hold 2^16 photons, f16 past 2^11 in all, f32-minus-mean and f32-minus-whole-mean always).
     #[arg(long, value_enum, value_delimiter = ',', default_value = "u32")]
     storage: Vec<Storage>,
 
-    /// Time rivals on the processor as well: an exact scanline search on one core and on all, and a k-d tree of the
-    /// photons (edges zero only).
+    /// Time rivals on the processor as well: an exact scanline search on one core and on all, and a k-d tree
+    /// of the photons (edges zero only).
     #[arg(long)]
     rivals: bool,
 
-    /// How often: 5 sets of up to 100 samples, or the thesis's 5 sets of up to 1000; slow cases take fewer [default: short].
+    /// How often: 5 sets of up to 100 samples, or the thesis's 5 sets of up to 1000; slow cases take fewer
+    /// [default: short].
     #[arg(long, value_enum)]
     protocol: Option<ProtocolName>,
 
-    /// Time to share out among all cases, such as 90s or 5m [default: 60s, 3m for --suite fast, or 10m for the thesis's
-    /// protocol].
+    /// Time to share out among all cases, such as 90s or 5m [default: 60s, 3m for --suite fast, or 10m for
+    /// the thesis's protocol].
     #[arg(long, value_parser = duration, allow_negative_numbers = true)]
     budget: Option<Duration>,
 
@@ -114,8 +116,8 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
 
-    /// Go on with a file that --json wrote, and keep writing to it; the other options have to be the same again,
-    /// except the budget, which is a new one.
+    /// Go on with a file that --json wrote, and keep writing to it; the other options have to be the same
+    /// again, except the budget, which is a new one.
     #[arg(long, value_name = "FILE", conflicts_with = "json")]
     resume: Option<PathBuf>,
 
@@ -123,13 +125,13 @@ pub(crate) struct Args {
     #[arg(long, default_value_t = DeviceChoice::Auto)]
     device: DeviceChoice,
 
-    /// Time nothing, but compare two files that --json wrote: medians differ if all sets of one lie beyond all of the
-    /// other, and by 3 % or more.
+    /// Time nothing, but compare two files that --json wrote: medians differ if all sets of one lie beyond
+    /// all of the other, and by 3 % or more.
     #[arg(long, num_args = 2, value_names = ["OLD.json", "NEW.json"], exclusive = true)]
     compare: Option<Vec<PathBuf>>,
 }
 
-/// What a suite leaves no choice of.
+/// Options that a suite fixes.
 const FIXED_BY_SUITE: [&str; 10] = [
     "maps",
     "channel",
@@ -238,7 +240,8 @@ fn settings(args: &Args) -> BenchSettings {
     }
 }
 
-/// Kinds in each size, files in their own; small ones first, so that a short budget leaves out the large ones.
+/// Kinds in each size, files in their own; small ones first, so that a short budget leaves out the large
+/// ones.
 fn maps(args: &Args, max_side: u32) -> Result<Vec<MapSource>> {
     let mut maps = Vec::new();
     for map in &args.maps {
@@ -281,7 +284,7 @@ fn progress_bar() -> ProgressBar {
 fn show(bar: &ProgressBar, progress: &Progress) {
     bar.set_length(progress.sets as u64);
     bar.set_position(progress.sets_done as u64);
-    // Sets differ too much in length to tell the end from their number; the budget is what is sure.
+    // Sets differ too much in length to estimate the end from their number; the budget is a sure bound.
     bar.set_prefix(format!("at most {} s left", progress.budget_left.as_secs() + 1));
     bar.set_message(progress.case.clone());
 }

@@ -1,4 +1,4 @@
-//! Results of timing runs for people, within 80 columns.
+//! Results of timing runs as text, within 80 columns.
 
 use std::path::Path;
 use std::time::Duration;
@@ -23,7 +23,8 @@ or unknown to it), with those of a quarter, unchanged, after an edit of 64 x 64\
 pixels in the middle or the lower left corner, with photons in addition;\n\
 none-masked, half-masked: searches with a mask.";
 
-/// A run for each section (map, size, question), fastest first within each stage; what follows says what to mind.
+/// A run for each section (map, size, question), fastest first within each stage; notes on noise and errors
+/// follow.
 pub(super) fn print_report(report: &Report, json: Option<&Path>) -> Result<()> {
     let protocol = report.settings.protocol;
     let mut facts = device_facts(&report.device);
@@ -113,7 +114,7 @@ fn answer(run: &Run) -> String {
     }
 }
 
-/// What a reader should know before trusting a number.
+/// Notes on how far the numbers can be trusted.
 fn print_warnings(report: &Report) -> Result<()> {
     for run in report.runs.iter().filter(|run| run.is_wrong()) {
         output::print(&format!(

@@ -31,10 +31,11 @@ const TOO_LARGE: u32 = 4;
 
 /// The thesis's Figures 1.2 to 1.4 and ours, with the error of each.
 ///
-/// Draws one scene with the best fixed radius (Figure 1.2), one four times as large (1.3), one pixel (1.4), and
-/// variable ones, from the same photons. Errors are those of indirect light against a reference: the photons of each pixel
-/// alone, averaged over other seeds; they are also told for the caustics alone, where the reference's indirect irradiance is
-/// more than three times its median, and for the other diffuse pixels, the walls; not if the median is 0. The folder gets figures.png, figures.json and each picture.
+/// Draws one scene with the best fixed radius (Figure 1.2), one four times as large (1.3), one pixel (1.4),
+/// and variable ones, from the same photons. Errors are those of indirect light against a reference: the
+/// photons of each pixel alone, averaged over other seeds; they are also given for the caustics alone, where
+/// the reference's indirect irradiance is more than three times its median, and for the other diffuse pixels,
+/// the walls; not if the median is 0. The folder gets figures.png, figures.json and each picture.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
     #[command(flatten)]
@@ -74,7 +75,7 @@ struct FixedRadius {
     regions: RegionErrors,
 }
 
-/// What figures.json says.
+/// The content of figures.json.
 #[derive(Serialize)]
 struct Report {
     version: &'static str,
@@ -83,15 +84,16 @@ struct Report {
     settings: PictureSettings,
     renderer: String,
     reference_seeds: u32,
-    /// How far two halves of the reference's seeds are apart, halved: its own noise. SSIM and FLIP are of the halves.
+    /// How far two halves of the reference's seeds are apart, halved: its own noise. SSIM and FLIP are of the
+    /// halves.
     reference_noise: PictureError,
     /// The same in each region.
     reference_noise_of_regions: RegionErrors,
     figures: Vec<Figure>,
     /// Pixels of the caustics, and of the walls.
     region_pixels: [usize; 2],
-    /// Every fixed radius that was tried: from 1 up to the first that is worse than the one before by both measures, in the
-    /// whole picture and on the walls.
+    /// Every fixed radius that was tried: from 1 up to the first that is worse than the one before by both
+    /// measures, in the whole picture and on the walls.
     fixed: Vec<FixedRadius>,
 }
 

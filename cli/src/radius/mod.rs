@@ -26,10 +26,12 @@ use report::{MapReport, Report, Timing};
 #[derive(Debug, clap::Args)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
 pub(crate) struct Args {
-    /// Photon density map, counts per pixel: EXR (one f16, f32 or u32 channel), PNG (8 or 16-bit grey) or NPY.
+    /// Photon density map, counts per pixel: EXR (one f16, f32 or u32 channel), PNG (8 or 16-bit grey) or
+    /// NPY.
     map: PathBuf,
 
-    /// Radius map to write: .exr (u32 channel "radius", settings as attributes), .npy (u32), or .png (a picture).
+    /// Radius map to write: .exr (u32 channel "radius", settings as attributes), .npy (u32), or .png (a
+    /// picture).
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
 
@@ -44,8 +46,8 @@ pub(crate) struct Args {
     #[arg(long)]
     verify: bool,
 
-    /// Prove the result on the GPU: each radius by two boxes, each table entry by the counts; exit 1 if something is not
-    /// proved. For the summed-area table.
+    /// Prove the result on the GPU: each radius by two boxes, each table entry by the counts; exit 1 if
+    /// something is not proved. For the summed-area table.
     #[arg(long, conflicts_with_all = ["allow_inexact", "mask"])]
     certify: bool,
 
@@ -53,8 +55,8 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE")]
     limited_mask: Option<PathBuf>,
 
-    /// Map of the pixels that need a radius: those that are 0 in it get 0, and cost next to nothing. EXR, NPY, or any PNG,
-    /// 1 bit and colours too: black pixels are 0, and so are wholly transparent ones.
+    /// Map of the pixels that need a radius: those that are 0 in it get 0, and cost next to nothing. EXR,
+    /// NPY, or any PNG, 1 bit and colours too: black pixels are 0, and so are wholly transparent ones.
     #[arg(long, value_name = "FILE")]
     mask: Option<PathBuf>,
 
@@ -185,7 +187,7 @@ fn read_mask(path: &Path, counts: &Image<u32>) -> Result<Image<u8>> {
     Ok(mask)
 }
 
-/// An error of the library, with the option to change and the file at fault.
+/// An error of the library, with the option to change and the file concerned.
 fn in_words_of_options(error: Error, map: &Path) -> anyhow::Error {
     match error {
         Error::Setting { name, value, reason } => {
@@ -227,7 +229,7 @@ fn check_fits(args: &Args, counts: &Image<u32>, device: &DeviceInfo) -> Result<(
     Ok(())
 }
 
-/// What the arguments ask for; where the planner may choose, its choice without a map.
+/// The settings by the arguments; where the planner may choose, its choice without a map.
 fn settings(args: &Args) -> Settings {
     let exactness = if args.allow_inexact { Exactness::Waived } else { Exactness::Required };
     Settings { exactness, limited_mask: true, masked: args.mask.is_some(), ..args.method.settings() }

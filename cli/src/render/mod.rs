@@ -25,8 +25,9 @@ use super::{Outcome, device, output};
 
 /// Render a scene by photons whose kernels fit their density.
 ///
-/// Direct light is traced with soft shadows; all other light is photons, drawn over as many pixels as it takes to hold n of
-/// them. What is seen in mirrors and through glass is gathered around each place that is seen there.
+/// Direct light is traced with soft shadows; all other light is photons, drawn over as many pixels as it
+/// takes to hold n of them. What is seen in mirrors and through glass is gathered around each place that is
+/// seen there.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
     #[command(flatten)]
@@ -48,20 +49,21 @@ pub(crate) struct Args {
     #[arg(long, requires = "gather")]
     count_correction: bool,
 
-    /// Make a reference: each pixel keeps its own photons only, averaged over this many seeds, saved as it goes. The seeds are
-    /// those after --seed, so that it holds no photon of the picture that it is compared with. Nothing is spread, so that
-    /// options about kernels are refused.
+    /// Make a reference: each pixel keeps its own photons only, averaged over this many seeds, saved as it
+    /// goes. The seeds are those after --seed, so that it holds no photon of the picture that it is compared
+    /// with. Nothing is spread, so that options about kernels are refused.
     #[arg(long, value_name = "SEEDS", num_args = 0..=1, default_missing_value = "16", allow_negative_numbers = true)]
     #[arg(value_parser = whole_checked_later(1..=u32::MAX))]
     #[arg(conflicts_with_all = ["gather", "radius", "first_bounce", "kernel", "min_photons", "max_radius"])]
     reference: Option<u32>,
 
-    /// How direct light finds what is in its way: by shadow rays, or by shadow maps around --light-samples places on each
-    /// area light (thesis 2.2).
+    /// How direct light finds what is in its way: by shadow rays, or by shadow maps around --light-samples
+    /// places on each area light (thesis 2.2).
     #[arg(long, value_enum, default_value_t = DirectLight::Traced)]
     direct: DirectLight,
 
-    /// How photons find what they meet first: by a ray each, or from maps rasterised from the lights (thesis 2.6.1).
+    /// How photons find what they meet first: by a ray each, or from maps rasterised from the lights (thesis
+    /// 2.6.1).
     #[arg(long, value_enum, default_value_t = FirstBounce::Rays)]
     first_bounce: FirstBounce,
 

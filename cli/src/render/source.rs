@@ -100,7 +100,7 @@ impl Source {
     }
 }
 
-/// The words of `error` for a setting that an option gave.
+/// The message of `error` for a setting that an option gave.
 pub(crate) fn in_words_of_options(error: Error) -> anyhow::Error {
     match error {
         Error::Setting { name, value, reason } => {

@@ -54,12 +54,13 @@ Without a display, `varikernel render` and `varikernel radius` make the same fil
 
 /// Open a window on a scene or a map: the picture live, every stage of it, and all settings.
 ///
-/// Photons are traced frame after frame while nothing moves; with a software renderer, fewer in each, so that the window answers.
+/// Photons are traced frame after frame while nothing moves; with a software renderer, fewer in each, so that
+/// the window answers.
 #[derive(Debug, clap::Args)]
 #[command(after_help = AFTER_HELP)]
 pub(crate) struct Args {
-    /// A scene file, one of cornell-glass, cornell-boxes, cornell-empty, mirror-ring, water, a map (EXR, PNG or NPY, counts per
-    /// pixel), or settings that the window saved (JSON).
+    /// A scene file, one of cornell-glass, cornell-boxes, cornell-empty, mirror-ring, water, a map (EXR, PNG
+    /// or NPY, counts per pixel), or settings that the window saved (JSON).
     #[arg(default_value = "cornell-glass", value_name = "SCENE|MAP")]
     source: PathBuf,
 
@@ -136,7 +137,7 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
         }
         check_writable(path)?;
     }
-    // A file that is not there needs no window to be told.
+    // A file that is not there is reported before a window opens.
     if !is_settings(&args.source) {
         check_source(Path::new(&choices.source))?;
     }

@@ -115,7 +115,7 @@ fn headers_that_claim_more_than_memory_holds() {
         &["claims 1000000000 x 1000000000"],
     );
     refuses_map("a.png", &png_header(1_000_000_000, 1_000_000_000, 0), &["claims 1000000000 x 1000000000"]);
-    // What stands in the way depends on the `exr` crate: the size, or blocks that such a size would have.
+    // The error depends on the `exr` crate: the size, or blocks that such a size would have.
     let mut bytes = exr(&[("n", &[1.0; 5])]);
     let window = [0, 0, 4, 0].map(i32::to_le_bytes).concat();
     let claim = [0, 0, 999_999_999, 999_999_999].map(i32::to_le_bytes).concat();

@@ -1,4 +1,4 @@
-//! What a glTF file holds and the picture lacks is told in one line.
+//! What a glTF file holds and the picture lacks is reported in one line.
 
 use std::io::Cursor;
 

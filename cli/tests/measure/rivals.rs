@@ -202,7 +202,7 @@ fn the_program_shows_rivals_and_a_wrong_one() {
         "{text}"
     );
 
-    // Another run adds nothing to whole sets; one wrong pixel in the file is one that it tells of.
+    // Another run adds nothing to whole sets; one wrong pixel in the file is reported.
     let mut report = Report::load(&file).unwrap();
     let wrong = report.runs.iter_mut().find(|run| run.case.rival() == Some(Rival::Kiddo)).unwrap();
     wrong.wrong_pixels = 1;

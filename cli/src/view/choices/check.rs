@@ -1,4 +1,4 @@
-//! What saved settings may not say: a file can hold any number, and not each makes a picture.
+//! Checks of saved settings: a file can hold any number, and not every one gives a picture.
 
 use anyhow::{Result, bail};
 use varikernel::glam::Vec3;

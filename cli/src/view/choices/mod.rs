@@ -1,4 +1,4 @@
-//! Everything that a person may choose in the window, as saved settings hold it, and as options of the other verbs.
+//! Everything that can be chosen in the window, as saved settings and as options of the other verbs.
 
 mod check;
 
@@ -33,7 +33,8 @@ pub(super) struct Choices {
     pub(super) method: Method,
     pub(super) order: Order,
     pub(super) edges: Edges,
-    /// Photons of a frame; where `adapt` holds, the window changes them so that a frame takes `frame_milliseconds`.
+    /// Photons of a frame; where `adapt` holds, the window changes them so that a frame takes
+    /// `frame_milliseconds`.
     pub(super) photons_per_frame: u32,
     pub(super) adapt: bool,
     pub(super) frame_milliseconds: u32,
@@ -79,7 +80,7 @@ impl From<CameraChoice> for Camera {
     }
 }
 
-/// The file: what tells it from others, how to get the same without a window, and the choices.
+/// The file: its kind, how to get the same without a window, and the choices.
 #[derive(Serialize, Deserialize)]
 struct File {
     varikernel_view: u32,
@@ -160,7 +161,7 @@ impl Choices {
     }
 }
 
-/// The word of an option.
+/// The value of an option.
 pub(super) fn word(value: impl ValueEnum + Copy) -> String {
     value.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
 }
