@@ -75,7 +75,8 @@ fn main() -> Result<()> {
     // Step 8: each frame.
     let radii = pipeline.render(&density)?.texture();
 
-    // Step 9: the radii in the host's own shader; program, vertex array and viewport are as it left them but for its own changes.
+    // Step 9: the radii in the host's own shader; program, vertex array and viewport are as it left them but
+    // for its own changes.
     let shown = texture(glow, glow::RGBA8, (glow::RGBA, glow::UNSIGNED_BYTE), size)?;
     let mut pixels = vec![0_u8; 4 * usize::from(SIDE) * usize::from(SIDE)];
     // SAFETY: the context is current, and `pixels` has room for all of them.
@@ -99,7 +100,8 @@ fn main() -> Result<()> {
         image::save_buffer(&path, &pixels, SIDE.into(), SIDE.into(), image::ColorType::Rgba8)?;
     }
 
-    // Step 10: a new size takes new textures and keeps the shaders. Everything goes while the context is current, in any order.
+    // Step 10: a new size takes new textures and keeps the shaders. Everything goes while the context is
+    // current, in any order.
     pipeline.resize(map_size / 2)?;
     Ok(())
 }

@@ -1,4 +1,4 @@
-//! The definition on maps worked by hand, and what its companions count.
+//! The definition on maps worked by hand, and the costs that the other references count.
 
 use glam::UVec2;
 use proptest::prelude::*;
@@ -112,7 +112,8 @@ fn fetches(radius: u32, split: Split) -> (usize, usize) {
 
 #[test]
 fn fetches_are_those_of_the_thesis_where_it_counts_them() {
-    // Figure 3.4: 6 for radius 1 (6.3.2 says 5 at most) and 13 for radius 2; 6.3.2: as little as 34 for radius 8.
+    // Figure 3.4: 6 for radius 1 (6.3.2 says 5 at most) and 13 for radius 2; 6.3.2: as little as 34 for
+    // radius 8.
     assert_eq!(fetches(1, Split::Odd), (6, 6));
     assert_eq!(fetches(2, Split::Odd).1, 13);
     assert_eq!(fetches(8, Split::Odd), (34, 97));

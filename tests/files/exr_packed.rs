@@ -109,7 +109,8 @@ fn damage_never_panics_nor_takes_all_memory() {
 #[test]
 fn claims_out_of_proportion_are_refused() {
     let bytes = encoded(Compression::DWAA(None), Blocks::ScanLines, vec![("photons", whole())]);
-    // A chunk begins with its row and length, and then eleven counters: version 2, and the bytes of 67 x 32 counts.
+    // A chunk begins with its row and length, and then eleven counters: version 2, and the bytes of 67 x 32
+    // counts.
     let begin = [2_u64.to_le_bytes(), (67 * 32 * 4_u64).to_le_bytes()].concat();
     let chunk = bytes.windows(16).position(|window| window == begin).unwrap();
     for counter in [1, 6, 7, 8, 9] {

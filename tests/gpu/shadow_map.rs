@@ -92,8 +92,8 @@ fn cut_ridge(top: f64, side: f64, half_width: f64) -> String {
     format!("[surfaces.ridge]\nmaterial = \"white\"\nquads = [{left}, {middle}, {right}]")
 }
 
-/// A texel is 1/256 of the distance wide, and the middles of those next to the strip's middle are on the slopes. As what receives
-/// light the strip is lit; as what is in its way it lets none through.
+/// A texel is 1/256 of the distance wide, and the middles of those next to the strip's middle are on the
+/// slopes. As what receives light the strip is lit; as what is in its way it lets none through.
 #[test]
 fn a_strip_that_no_texel_sees_is_lit_and_casts_a_shadow() {
     let gl = egl();
@@ -115,8 +115,8 @@ fn a_strip_that_no_texel_sees_is_lit_and_casts_a_shadow() {
     assert!(mapped.values().iter().all(|value| value[1] == 0.0), "light comes through");
 }
 
-/// Spheres are met exactly: a ball casts a round shadow, the half of it that is turned away is dark, and nothing on it shades
-/// itself.
+/// Spheres are met exactly: a ball casts a round shadow, the half of it that is turned away is dark, and
+/// nothing on it shades itself.
 #[test]
 fn a_ball_and_its_shadow_are_those_of_rays() {
     let gl = egl();
@@ -154,8 +154,9 @@ fn shipped_scenes_with_point_lamps_are_those_of_rays() {
     }
 }
 
-/// Area lights: 64 places that all pixels share, against 1024 rays a pixel to places of their own. Measured: 0.15, 0.40 and
-/// 0.44 % of the light differ; of the pixels, up to 1.7 % by more than a tenth, all in penumbrae.
+/// Area lights: 64 places that all pixels share, against 1024 rays a pixel to places of their own. Measured:
+/// 0.15, 0.40 and 0.44 % of the light differ; of the pixels, up to 1.7 % by more than a tenth, all in
+/// penumbrae.
 #[test]
 fn soft_shadows_are_those_of_many_rays() {
     let gl = egl();
@@ -208,7 +209,8 @@ fn sizes_do_not_matter_and_nothing_is_lit_from_behind() {
     assert!(lit.direct.values().iter().flatten().all(|&value| value > 0.0));
 }
 
-/// A plate close above the wall, in a scene that reaches 10^4 times as far: what is small casts its shadow all the same.
+/// A plate close above the wall, in a scene that reaches 10^4 times as far: what is small casts its shadow
+/// all the same.
 #[test]
 fn a_small_thing_casts_a_shadow_in_a_large_scene() {
     let gl = egl();

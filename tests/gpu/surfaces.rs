@@ -10,7 +10,8 @@ use varikernel::view::View;
 use crate::stage::settings;
 use crate::support::egl;
 
-/// Pixels whose surface is another than the ray's, and the largest distance from the ray's place where it is the same.
+/// Pixels whose surface is another than the ray's, and the largest distance from the ray's place where it is
+/// the same.
 fn differences(
     scene: &Scene,
     view: &View,

@@ -58,7 +58,8 @@ fn rays_along_the_axes_meet_walls_at_grazing_distance() {
     }
 }
 
-/// A stray sphere, and a ground that is much larger than the rest, have boxes of their own; nothing is missed from anywhere.
+/// A stray sphere, and a ground that is much larger than the rest, have boxes of their own; nothing is missed
+/// from anywhere.
 #[test]
 fn nothing_is_missed_beside_what_is_far_or_large() {
     let far = "\n[surfaces.stray]\nmaterial = \"white\"\nspheres = [{ centre = [-5e8, 2e8, 1e8], radius = 3 }]\n\

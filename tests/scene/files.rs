@@ -1,4 +1,4 @@
-//! Scene files: the shipped ones hold their numbers, and bad ones are told by line and field.
+//! Scene files: the shipped ones hold their numbers, and errors in bad ones have line and field.
 
 use serde_json::Value;
 use varikernel::glam::Vec3;

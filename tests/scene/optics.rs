@@ -69,7 +69,8 @@ fn a_pane_passes_what_two_faces_leave() {
     let pane = "[surfaces.pane]\nmaterial = \"glass\"\nquads = [
         [[-9, 5, -9], [-9, 5, 9], [9, 5, 9], [9, 5, -9]], [[-9, 4, -9], [9, 4, -9], [9, 4, 9], [-9, 4, 9]]]\n";
     let landings = beam(&format!("{FLOOR}{pane}"));
-    // (1 - R) / (1 + R) with R = 0.04, all reflections between the faces counted: 12/13 of 20000, within 4 deviations.
+    // (1 - R) / (1 + R) with R = 0.04, all reflections between the faces counted: 12/13 of 20000, within 4
+    // deviations.
     let expected = 20_000.0 * 12.0 / 13.0;
     assert!((landings.len() as f64 - expected).abs() < 4.0 * (expected / 13.0).sqrt(), "{}", landings.len());
     assert!(landings.iter().all(Photon::passed_glass));

@@ -1,4 +1,4 @@
-//! What photons owe to their seed, and to nothing else.
+//! Photons depend on their seed, and on nothing else.
 
 use bytemuck::cast_slice;
 use rayon::ThreadPoolBuilder;
@@ -89,7 +89,8 @@ fn photons_together_carry_the_power_of_all_lights() {
     for id in 0..settings.photons {
         sum += emission.photon(id).power.as_dvec3();
     }
-    // By hand: π · 130 · 105 · radiance, 4π · intensity, 2π (1 - cos 30°) · intensity, π · 100 · 200 · emission.
+    // By hand: π · 130 · 105 · radiance, 4π · intensity, 2π (1 - cos 30°) · intensity, π · 100 · 200 ·
+    // emission.
     let pi = std::f64::consts::PI;
     let cone = 2.0 * pi * (1.0 - 0.75_f64.sqrt());
     let red = pi * 13650.0 * 17.0 + 4.0 * pi * 2e4 + cone * 5e4 + pi * 2e4;

@@ -1,4 +1,4 @@
-//! What can be wrong with a glTF file, told with its place.
+//! What can be wrong with a glTF file, reported with its place.
 
 use serde_json::json;
 

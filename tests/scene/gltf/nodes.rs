@@ -55,7 +55,8 @@ fn a_mesh_squeezed_flat_keeps_finite_normals() {
 #[test]
 fn normals_of_a_mirrored_and_stretched_mesh_stay_across_it() {
     let mut made = with_normals();
-    // Along (1, 0, 1), where the surface is not: the normals say so alone, and smooth surfaces take them from the file.
+    // Along (1, 0, 1), where the surface is not: the normals say so alone, and smooth surfaces take them from
+    // the file.
     let slanted = made.floats("VEC3", &[1.0, 0.0, 1.0].repeat(4));
     made.primitive()["attributes"]["NORMAL"] = json!(slanted);
     made.json["nodes"][0]["scale"] = json!([2, 1, -1]);

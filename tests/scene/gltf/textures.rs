@@ -24,7 +24,8 @@ fn four_colours(format: ImageFormat, scale: u32) -> Vec<u8> {
     bytes.into_inner()
 }
 
-/// The square with coordinates from (0, 1) at its lower left corner to (1, 0), and a base colour texture beside it.
+/// The square with coordinates from (0, 1) at its lower left corner to (1, 0), and a base colour texture
+/// beside it.
 fn textured() -> Made {
     let mut made = Made::square();
     let coordinates = made.floats("VEC2", &[0.0, 1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0]);
