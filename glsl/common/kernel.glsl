@@ -28,7 +28,8 @@ Kernel kernel_on(vec3 position, Surface surface, uint radius)
     vec3 sight = normalize(surface.position - camera);
     vec3 flat_sight = sight - dot(sight, surface.normal) * surface.normal;
     vec3 other = abs(surface.normal.x) < 0.5 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0);
-    vec3 along = dot(flat_sight, flat_sight) > 1e-8 ? normalize(flat_sight) : normalize(cross(surface.normal, other));
+    vec3 along = dot(flat_sight, flat_sight) > 1e-8 ? normalize(flat_sight)
+                                                    : normalize(cross(surface.normal, other));
     vec3 across = cross(surface.normal, along);
     float pixel = pixel_side * surface.depth;
     float disc = float(2u * radius + 1u) * sqrt(area_on(surface, LEAST_COSINE) / PI);
@@ -49,7 +50,8 @@ ivec4 reach(Kernel kernel, mat4 to_clip, ivec2 middle)
         vec2 farthest = vec2(0.0);
         for (int side = -1; side <= 1; side += 2) {
             vec4 end = to_clip * vec4(kernel.position + float(side) * axes[axis], 1.0);
-            vec2 pixels = (end.xy / max(end.w, 0.05 * centre.w) - centre.xy / centre.w) * 0.5 * vec2(map_size);
+            vec2 pixels =
+            (end.xy / max(end.w, 0.05 * centre.w) - centre.xy / centre.w) * 0.5 * vec2(map_size);
             farthest = max(farthest, abs(pixels));
         }
         extent += farthest * farthest;

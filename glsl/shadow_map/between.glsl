@@ -54,7 +54,8 @@ int triangle_between(vec3 from, vec3 away, vec3 corner, vec3 edge1, vec3 edge2, 
 {
     float before = dot(plane.xyz, from) - plane.w;
     float after = dot(plane.xyz, from + away) - plane.w;
-    if (before * after >= 0.0 || abs(before) <= MARGIN * coarseness || abs(after) <= MARGIN * coarseness_of_light) {
+    if (before * after >= 0.0 || abs(before) <= MARGIN * coarseness
+        || abs(after) <= MARGIN * coarseness_of_light) {
         return APART;
     }
     vec3 across = cross(edge1, edge2);

@@ -139,8 +139,8 @@ fn driver(get: Get<'_>) -> Option<Refusal> {
         Refusal::new(
             format!("{reason}, which draws through Vulkan and finds no device of it"),
             format!(
-                "install a driver of Vulkan (on the processor: sudo apt-get install mesa-vulkan-drivers, and set \
-                 LIBGL_ALWAYS_SOFTWARE=true beside it), or unset {name}"
+                "install a driver of Vulkan (on the processor: sudo apt-get install mesa-vulkan-drivers, and \
+                 set LIBGL_ALWAYS_SOFTWARE=true beside it), or unset {name}"
             ),
         )
     } else {

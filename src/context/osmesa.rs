@@ -16,9 +16,9 @@ const ATTRIBUTES: [c_int; 12] = [0x22, 0x1908, 0x30, 24, 0x33, 0x34, 0x36, 3, 0x
 const GL_UNSIGNED_BYTE: u32 = 0x1401;
 
 /// How to get the library, and what to use instead.
-const REMEDY: &str = "use EGL (--device egl), which has the same renderer; OSMesa was removed from Mesa in 25.1, up to then:\n  \
-    Debian, Ubuntu: sudo apt-get install libosmesa6\n  \
-    Fedora:         sudo dnf install mesa-libOSMesa";
+const REMEDY: &str = "use EGL (--device egl), which has the same renderer; OSMesa was removed from Mesa in \
+                      25.1, up to then:\n  Debian, Ubuntu: sudo apt-get install libosmesa6\n  \
+                      Fedora:         sudo dnf install mesa-libOSMesa";
 
 type CreateContextAttribs = unsafe extern "C" fn(*const c_int, *mut c_void) -> *mut c_void;
 type MakeCurrent = unsafe extern "C" fn(*mut c_void, *mut c_void, u32, c_int, c_int) -> u8;

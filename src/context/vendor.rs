@@ -54,16 +54,14 @@ fn broken(file: &Path, variable: Option<&str>) -> Option<Refusal> {
         let by = variable.map(|variable| format!(", named by {variable},")).unwrap_or_default();
         format!("the vendor file {}{by} {what}", file.display())
     };
-    let remedy = |library: &str| {
-        match variable {
+    let remedy = |library: &str| match variable {
         Some(variable) => without(variable),
         None if library.contains("nvidia") => {
-            "install the graphics libraries of NVIDIA's driver (in a container, NVIDIA_DRIVER_CAPABILITIES must \
-             include \"graphics\"), or remove the file"
+            "install the graphics libraries of NVIDIA's driver (in a container, NVIDIA_DRIVER_CAPABILITIES \
+             must include \"graphics\"), or remove the file"
                 .to_owned()
         }
         None => format!("remove the file, or {INSTALL}"),
-    }
     };
     let text = match fs::read_to_string(file) {
         Ok(text) => text,

@@ -207,7 +207,8 @@ fn refuse_sticky(path: &Path, folder: &Path, existing: &fs::Metadata, ours: &Fil
     Err(Error::file(
         path,
         format!(
-            "there is a file of this name that belongs to another user, and in the folder {} only its owner may replace it",
+            "there is a file of this name that belongs to another user, and in the folder {} only its \
+             owner may replace it",
             folder.display()
         ),
         "choose another name or folder, or ask the owner to remove the file",

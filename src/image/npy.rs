@@ -18,7 +18,8 @@ pub(super) const SIGNATURE: &[u8] = b"\x93NUMPY";
 /// The longest header that is read, in bytes; NumPy itself stops at 10000.
 const MAX_HEADER: u64 = 1 << 16;
 
-const DTYPES: &str = "save it as one of u1, u2, u4, u8, i1, i2, i4, i8, f2, f4 and f8, for example numpy.save(path, a.astype(\"u4\"))";
+const DTYPES: &str = "save it as one of u1, u2, u4, u8, i1, i2, i4, i8, f2, f4 and f8, for example \
+                      numpy.save(path, a.astype(\"u4\"))";
 
 /// The header's fields.
 struct Header {

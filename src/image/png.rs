@@ -172,7 +172,8 @@ pub(super) fn grey_levels(image: &Image<u32>) -> Result<Vec<u16>, Problem> {
         let (x, y) = (index % width, index / width);
         return Err(Problem::new(
             format!(
-                "a PNG holds counts to 65535, and the count at ({x}, {y}) is {count}; {} of {} pixels are above it",
+                "a PNG holds counts to 65535, and the count at ({x}, {y}) is {count}; {} of {} \
+                 pixels are above it",
                 too_large.len(),
                 image.values().len()
             ),

@@ -51,7 +51,8 @@ pub fn event_loop() -> Result<EventLoop<()>> {
         let reason = after.map_or(reason.as_str(), |(_, reason)| reason);
         Error::NoContext {
             reason: format!("no display to open a window on: {reason}"),
-            remedy: "set DISPLAY or WAYLAND_DISPLAY to a display that runs (`xvfb-run` makes one without a screen)"
+            remedy: "set DISPLAY or WAYLAND_DISPLAY to a display that runs (`xvfb-run` makes one \
+                     without a screen)"
                 .to_owned(),
         }
     })

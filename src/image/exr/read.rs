@@ -247,7 +247,8 @@ fn check_headers(headers: &[Header], length: u64, options: &ReadOptions<'_>) -> 
         if block_bytes > limit {
             return Err(Problem::new(
                 format!(
-                    "the header claims blocks of {block_width} x {block_height} pixels, more than {limit} bytes"
+                    "the header claims blocks of {block_width} x {block_height} pixels, more \
+                     than {limit} bytes"
                 ),
                 "save it with scan lines or smaller tiles",
             ));
@@ -257,7 +258,8 @@ fn check_headers(headers: &[Header], length: u64, options: &ReadOptions<'_>) -> 
     }
     if length < least_length {
         return Err(Problem::damaged(format!(
-            "truncated: the header claims blocks that take at least {least_length} bytes, the file has {length}"
+            "truncated: the header claims blocks that take at least {least_length} bytes, the \
+             file has {length}"
         )));
     }
     Ok(())

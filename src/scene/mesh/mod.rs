@@ -188,7 +188,8 @@ fn checked(material: Material) -> Result<Material, Problem> {
         {
             Err((
                 format!(
-                    "the index {index} or transmittance {transmittance} of material \"{name}\" is not possible"
+                    "the index {index} or transmittance {transmittance} of material \
+                     \"{name}\" is not possible"
                 ),
                 "the index goes from 0.1 to 10, the transmittance from 0 to 1",
             ))

@@ -73,7 +73,8 @@ impl Faces {
         let first = self.corners.len();
         for word in line.words() {
             let corner = Corner::read(word, counts).map_err(|problem| {
-                let remedy = "give corners as VERTEX, VERTEX/TEXTURE, VERTEX//NORMAL or VERTEX/TEXTURE/NORMAL, counted from 1";
+                let remedy = "give corners as VERTEX, VERTEX/TEXTURE, VERTEX//NORMAL or \
+                              VERTEX/TEXTURE/NORMAL, counted from 1";
                 (format!("{}: {problem}", line.place()), remedy)
             })?;
             self.corners.push(corner);

@@ -226,8 +226,8 @@ mod tests {
             left_out("a.obj", &text, true),
             [
                 "a second material \"red\" of a.mtl (line 3)",
-                "material \"bark\" of a.mtl: transparency (d), texture \"bark.png\" (map_Kd): there is no such file in the \
-                 program, no Kd, 0.8 is taken",
+                "material \"bark\" of a.mtl: transparency (d), texture \"bark.png\" (map_Kd): there is no \
+                 such file in the program, no Kd, 0.8 is taken",
                 "material \"bad\" of a.mtl, which no face has, line 8, `illum x`: `x` is not a finite number",
                 "materials of none.mtl (line 1): there is no such file in the program",
             ]
