@@ -53,7 +53,8 @@ Examples:
 /// (E. W. Bjønnes, Oslo 2010). Exit codes: 0 done, 1 the maps differ, are not
 /// proved or a promise is broken, 2 it could not be done.
 #[derive(Debug, Parser)]
-#[command(name = "varikernel", version, max_term_width = 100, arg_required_else_help = true, after_help = EXAMPLES)]
+#[command(name = "varikernel", version, max_term_width = 100)]
+#[command(arg_required_else_help = true, after_help = EXAMPLES)]
 struct Cli {
     #[command(subcommand)]
     verb: Verb,

@@ -12,14 +12,14 @@ use super::numbers::whole_checked_later;
 #[derive(Debug, clap::Args)]
 pub(super) struct MethodOptions {
     /// n: photons that a box has to hold, at least 1.
-    #[arg(short = 'n', long, default_value_t = 25, value_name = "N", value_parser = whole_checked_later(1..=u32::MAX))]
-    #[arg(allow_negative_numbers = true)]
+    #[arg(short = 'n', long, default_value_t = 25, value_name = "N")]
+    #[arg(value_parser = whole_checked_later(1..=u32::MAX), allow_negative_numbers = true)]
     pub(super) min_photons: u32,
 
     /// MR: the radius at which the search ends, in pixels, 1 to 32767; pixels that find too few photons get
     /// it.
-    #[arg(short = 'r', long, default_value_t = 32, value_name = "MR", value_parser = whole_checked_later(1..=u32::MAX))]
-    #[arg(allow_negative_numbers = true)]
+    #[arg(short = 'r', long, default_value_t = 32, value_name = "MR")]
+    #[arg(value_parser = whole_checked_later(1..=u32::MAX), allow_negative_numbers = true)]
     pub(super) max_radius: u32,
 
     /// What counts outside the map (thesis 3.1).

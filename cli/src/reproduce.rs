@@ -179,7 +179,7 @@ fn notes(run: &RunFile) -> Vec<String> {
     let left_out: usize = run.parts.iter().map(|part| part.report.left_out.len()).sum();
     let wrong: usize = runs().filter(|run| run.is_wrong()).count();
     vec![format!(
-        "{samples} samples were taken; in {suspect} of them the GPU query and the clock disagree. {left_out} cases were \
-         left out, and {wrong} of an exact method gave a wrong answer."
+        "{samples} samples were taken; in {suspect} of them the GPU query and the clock disagree. {left_out} \
+         cases were left out, and {wrong} of an exact method gave a wrong answer."
     )]
 }

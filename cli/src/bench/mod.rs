@@ -171,7 +171,8 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     }
     if args.photons.is_some() {
         bail!(
-            "--photons is not possible with --suite fast\nhelp: it takes --sizes, --build-sizes, --rivals and --protocol"
+            "--photons is not possible with --suite fast\nhelp: it takes --sizes, --build-sizes, \
+             --rivals and --protocol"
         );
     }
     // What can be refused without timing is refused first.

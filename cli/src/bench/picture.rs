@@ -28,7 +28,8 @@ pub(super) fn run(args: &Args) -> Result<Outcome> {
     ] {
         if given {
             bail!(
-                "--{name} is not possible with --suite picture\nhelp: it takes --sizes, --photons, --budget and --json"
+                "--{name} is not possible with --suite picture\nhelp: it takes --sizes, --photons, \
+                 --budget and --json"
             );
         }
     }

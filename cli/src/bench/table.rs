@@ -201,8 +201,8 @@ pub(super) fn print_comparison(old: &Report, new: &Report) -> Result<()> {
         output::print(&table.trim_fmt())?;
     }
     output::print(
-        "\nfaster, slower: every set's median of one lies beyond every one of the other,\nand the medians differ by \
-         3 % or more; for that, each needs 4 sets.",
+        "\nfaster, slower: every set's median of one lies beyond every one of the other,\n\
+         and the medians differ by 3 % or more; for that, each needs 4 sets.",
     )?;
     for (name, cases) in [("old", &comparison.only_old), ("new", &comparison.only_new)] {
         if !cases.is_empty() {

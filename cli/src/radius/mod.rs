@@ -194,7 +194,8 @@ fn in_words_of_options(error: Error, map: &Path) -> anyhow::Error {
             anyhow!("--{} {value} is not possible: {reason}", name.replace('_', "-"))
         }
         Error::Inexact { reason, remedy } => anyhow!(
-            "{}: the result would not be exact: {reason}\nhelp: {remedy}, or add --allow-inexact to see how wrong it gets",
+            "{}: the result would not be exact: {reason}\nhelp: {remedy}, or add --allow-inexact to see \
+             how wrong it gets",
             map.display()
         ),
         other => other.into(),

@@ -26,7 +26,8 @@ pub(crate) struct Source {
     pub(crate) size: UVec2,
 
     /// Photons that leave the lights; 1e6 is a million.
-    #[arg(long, default_value = "1e6", value_parser = parse_count, value_name = "NUMBER", allow_negative_numbers = true)]
+    #[arg(long, default_value = "1e6", value_name = "NUMBER")]
+    #[arg(value_parser = parse_count, allow_negative_numbers = true)]
     pub(crate) photons: u32,
 
     /// Diffuse landings after which a photon is followed no further.

@@ -59,7 +59,8 @@ pub(crate) struct Args {
     plant_fault: bool,
 
     /// Print the hashes of the maps that all renderers compute, so many times, and nothing else.
-    #[arg(long, hide = true, value_name = "TIMES", value_parser = whole(1..=u32::MAX), allow_negative_numbers = true)]
+    #[arg(long, hide = true, value_name = "TIMES")]
+    #[arg(value_parser = whole(1..=u32::MAX), allow_negative_numbers = true)]
     bits: Option<u32>,
 }
 

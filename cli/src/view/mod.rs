@@ -73,7 +73,8 @@ pub(crate) struct Args {
     window: UVec2,
 
     /// n: photons that a kernel or box has to hold [default: 400 for scenes, 25 for maps].
-    #[arg(short = 'n', long, value_name = "N", value_parser = whole(1..=u32::MAX), allow_negative_numbers = true)]
+    #[arg(short = 'n', long, value_name = "N")]
+    #[arg(value_parser = whole(1..=u32::MAX), allow_negative_numbers = true)]
     min_photons: Option<u32>,
 
     /// MR: the largest radius, in pixels [default: 64 for scenes, 32 for maps].
@@ -110,7 +111,8 @@ pub(crate) struct Args {
     beside: Option<View>,
 
     /// Where the line between the two is, as a share of the picture's width.
-    #[arg(long, default_value_t = 0.5, value_parser = parse_share, value_name = "SHARE", allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 0.5, value_name = "SHARE")]
+    #[arg(value_parser = parse_share, allow_negative_numbers = true)]
     split: f32,
 
     /// A picture of the same size that errors are taken against: EXR or PNG.
@@ -141,7 +143,8 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     if !is_settings(&args.source) {
         check_source(Path::new(&choices.source))?;
     }
-    let headless = "a window needs a display; `varikernel render` and `varikernel radius` make the same files without one";
+    let headless = "a window needs a display; `varikernel render` and `varikernel radius` make the same \
+                    files without one";
     device::check_for_crashes()?;
     let event_loop = window::event_loop().context(headless)?;
     let wishes = Wishes {

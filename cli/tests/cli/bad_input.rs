@@ -225,7 +225,8 @@ fn outputs_that_can_not_be_written() {
 #[test]
 fn meshes_say_what_is_wrong_with_them_and_what_is_left_out() {
     let place = workplace();
-    let scene = "[camera]\nposition = [0, 0, 3]\ndirection = [0, 0, -1]\nup = [0, 1, 0]\nvertical_fov_degrees = 60\n\
+    let scene = "[camera]\nposition = [0, 0, 3]\ndirection = [0, 0, -1]\nup = [0, 1, 0]\n\
+                 vertical_fov_degrees = 60\n\
                  [lights.lamp]\npoint = [0, 0, 3]\nintensity = [30, 30, 30]\n\
                  [surfaces.square]\nmesh = { file = \"./a.obj\" }\n";
     place.put("s.toml", scene.as_bytes());

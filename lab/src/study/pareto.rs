@@ -103,7 +103,8 @@ pub fn advice(overall: &[Overall]) -> Vec<String> {
         } else {
             write!(
                 sentence,
-                "radii are off by {:.2} pixels on the average, and {:.1} % of the pixels have another radius.",
+                "radii are off by {:.2} pixels on the average, and {:.1} % of the pixels \
+                 have another radius.",
                 step.mean_error,
                 100.0 * step.wrong_share
             )
@@ -175,8 +176,8 @@ mod tests {
             advice(&overall),
             [
                 "Below 3.0 copies a frame, nothing answers.",
-                "From 3.0 copies on, take half: radii are off by 0.50 pixels on the average, and 25.0 % of the pixels have \
-                 another radius.",
+                "From 3.0 copies on, take half: radii are off by 0.50 pixels on the average, and 25.0 % of \
+                 the pixels have another radius.",
                 "From 6.0 copies on, take exact: every radius is exact, on any map that is not refused.",
                 "More time than that buys nothing."
             ]

@@ -118,7 +118,8 @@ impl Choices {
         if is_map {
             let (method, order, edges) = (word(self.method), word(self.order), word(self.edges));
             return format!(
-                "varikernel radius {source} -o radius.png -n {n} -r {max} --method {method} --search {order} --edges {edges}"
+                "varikernel radius {source} -o radius.png -n {n} -r {max} --method {method} --search \
+                 {order} --edges {edges}"
             );
         }
         let [width, height] = self.size;
@@ -129,8 +130,8 @@ impl Choices {
         };
         let exposure = self.exposure.map_or_else(String::new, |stops| format!(" --exposure {stops:.2}"));
         format!(
-            "varikernel render {source} -o picture.exr --size {width}x{height} --photons {} {radius} --kernel {} \
-             --bounces {} --seed {}{exposure}",
+            "varikernel render {source} -o picture.exr --size {width}x{height} --photons {} {radius} \
+             --kernel {} --bounces {} --seed {}{exposure}",
             photons.max(1),
             word(self.kernel),
             self.bounces,
@@ -227,13 +228,14 @@ mod tests {
         let mut choices = choices();
         assert_eq!(
             choices.command(5000, false),
-            "varikernel render cornell-glass -o picture.exr --size 64x48 --photons 5000 -n 50 -r 16 --kernel cone --bounces 8 \
-             --seed 1"
+            "varikernel render cornell-glass -o picture.exr --size 64x48 --photons 5000 -n 50 -r 16 --kernel \
+             cone --bounces 8 --seed 1"
         );
         choices.source = "it's a map.exr".to_owned();
         assert_eq!(
             choices.command(0, true),
-            "varikernel radius 'it'\\''s a map.exr' -o radius.png -n 50 -r 16 --method sat --search bracketed --edges scale"
+            "varikernel radius 'it'\\''s a map.exr' -o radius.png -n 50 -r 16 --method sat --search \
+             bracketed --edges scale"
         );
         choices.set_method(Method::Pyramid);
         assert_eq!(choices.order, Order::Binary, "brackets are for the table");

@@ -93,7 +93,8 @@ impl State {
         }
         if size != wanted {
             bail!(
-                "{}: the reference has {} x {} pixels, and the picture {} x {}\nhelp: choose the size of the picture to fit",
+                "{}: the reference has {} x {} pixels, and the picture {} x {}\n\
+                 help: choose the size of the picture to fit",
                 path.display(),
                 size.x,
                 size.y,

@@ -187,14 +187,18 @@ mod tests {
         #[test]
         fn bands_agree_with_the_definition(
             (width, height, band_rows) in (1..14_u32, 1..14_u32, 1..15_u32),
-            counts in proptest::collection::vec(prop_oneof![6 => Just(0_u32), 2 => 1..9_u32, 1 => Just(u32::MAX)], 196),
+            counts in proptest::collection::vec(
+                prop_oneof![6 => Just(0_u32), 2 => 1..9_u32, 1 => Just(u32::MAX)],
+                196,
+            ),
             (min_photons, max_radius, scale) in (1..60_u32, 1..20_u32, any::<bool>()),
         ) {
             let density = Image::from_fn(UVec2::new(width, height), |x, y| counts[(14 * y + x) as usize]);
             let edges = if scale { Edges::Scale } else { Edges::Zero };
             let question = question(density.size(), min_photons, max_radius, edges);
             let mut scanline = Scanline::in_bands(question, band_rows);
-            prop_assert_eq!(scanline.run(&density), &varikernel::reference::radius(&density, question.search));
+            let defined = varikernel::reference::radius(&density, question.search);
+            prop_assert_eq!(scanline.run(&density), &defined);
         }
     }
 }
