@@ -29,7 +29,10 @@ const FULL_SCREEN: &str =
     "void main() { gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0, 0.0, 1.0); }";
 /// From black at radius 0 to white at MR.
 const SHOW: &str = "uniform usampler2D radii; uniform float max_radius; out vec4 colour;
-void main() { colour = vec4(vec3(float(texelFetch(radii, ivec2(gl_FragCoord.xy), 0).r) / max_radius), 1.0); }";
+void main() {
+    uint radius = texelFetch(radii, ivec2(gl_FragCoord.xy), 0).r;
+    colour = vec4(vec3(float(radius) / max_radius), 1.0);
+}";
 
 fn main() -> Result<()> {
     let picture = std::env::args().nth(1);

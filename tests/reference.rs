@@ -245,7 +245,10 @@ proptest! {
     #[test]
     fn the_companions_agree_with_the_definition(
         (width, height) in (1..16_u32, 1..16_u32),
-        counts in proptest::collection::vec(prop_oneof![4 => Just(0_u32), 2 => 1..9_u32, 1 => Just(1000)], 256),
+        counts in proptest::collection::vec(
+            prop_oneof![4 => Just(0_u32), 2 => 1..9_u32, 1 => Just(1000)],
+            256,
+        ),
         min_photons in 1..60_u32,
         max_radius in 1..20_u32,
         scale: bool,

@@ -84,7 +84,8 @@ macro_rules! logged {
                 let real: extern "system" fn($($kind),*) -> $answer = unsafe { std::mem::transmute(real) };
                 let answer = real($($argument),*);
                 let arguments = vec![$($argument as u64),*];
-                LOG.with_borrow_mut(|log| log.push(Call { name: stringify!($name), arguments, answer: answer.logged() }));
+                let call = Call { name: stringify!($name), arguments, answer: answer.logged() };
+                LOG.with_borrow_mut(|log| log.push(call));
                 answer
             })*
 
@@ -127,7 +128,9 @@ logged! {
     glGetShaderInfoLog(name: u32, size: i32, length: *mut i32, log: *mut u8) -> ();
     glGetProgramiv(name: u32, state: u32, value: *mut i32) -> ();
     glGetProgramInfoLog(name: u32, size: i32, length: *mut i32, log: *mut u8) -> ();
-    glGetActiveUniform(program: u32, index: u32, room: i32, length: *mut i32, size: *mut i32, kind: *mut u32, name: *mut u8) -> ();
+    glGetActiveUniform(
+        program: u32, index: u32, room: i32, length: *mut i32, size: *mut i32, kind: *mut u32, name: *mut u8
+    ) -> ();
     glGetUniformLocation(program: u32, name: *const u8) -> i32;
 }
 

@@ -44,7 +44,8 @@ fn room(material: &str) -> Scene {
 
 fn furnace(reflectance: f64) -> Scene {
     room(&format!(
-        "lambert = [{reflectance}, {reflectance}, {reflectance}], emission = [{EMISSION}, {EMISSION}, {EMISSION}]"
+        "lambert = [{reflectance}, {reflectance}, {reflectance}], emission = [{EMISSION}, \
+         {EMISSION}, {EMISSION}]"
     ))
 }
 

@@ -214,7 +214,8 @@ fn sizes_do_not_matter_and_nothing_is_lit_from_behind() {
 #[test]
 fn a_small_thing_casts_a_shadow_in_a_large_scene() {
     let gl = egl();
-    let far = "[surfaces.far]\nmaterial = \"white\"\nquads = [[[-1e4, -9, 1e4], [1e4, -9, 1e4], [1e4, -9, -1e4], [-1e4, -9, -1e4]]]";
+    let far = "[surfaces.far]\nmaterial = \"white\"\n\
+               quads = [[[-1e4, -9, 1e4], [1e4, -9, 1e4], [1e4, -9, -1e4], [-1e4, -9, -1e4]]]";
     let plate = "[surfaces.plate]\nmaterial = \"white\"\nquads = [\
                  [[0.1, 0.1, -0.99], [0.4, 0.1, -0.99], [0.4, 0.4, -0.99], [0.1, 0.4, -0.99]]]";
     let lamp = POINT.replace("[0, 0, 1]", "[-3, 0.3, -0.5]").replace("[0, 0, -1]", "[1, 0, 0]");
@@ -230,7 +231,8 @@ fn a_small_thing_casts_a_shadow_in_a_large_scene() {
 #[test]
 fn a_large_thing_close_to_the_lamp_casts_its_shadow() {
     let gl = egl();
-    let roof = "[surfaces.roof]\nmaterial = \"white\"\nquads = [[[-1e6, -1e6, 0.9], [1e6, -1e6, 0.9], [1e6, 1e6, 0.9], [-1e6, 1e6, 0.9]]]";
+    let roof = "[surfaces.roof]\nmaterial = \"white\"\n\
+                quads = [[[-1e6, -1e6, 0.9], [1e6, -1e6, 0.9], [1e6, 1e6, 0.9], [-1e6, 1e6, 0.9]]]";
     let shaded = picture(&gl, &lamp_and_wall(POINT, roof), 33, DirectLight::ShadowMap, 1).direct;
     assert!(shaded.values().iter().flatten().all(|&value| value == 0.0), "light comes through");
     // Behind the lamp, and close to the wall that it would shade if it lay before it.

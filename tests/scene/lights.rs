@@ -177,7 +177,8 @@ fn a_far_light_that_is_turned_away_sends_nothing() {
     let away = format!("[surfaces.lamp]\nmaterial = \"glow\"\nquads = [{upwards}]");
     assert_eq!(lands(&floor_under(&away)).0, 0.0);
     // A spot that looks past the floor.
-    let spot = "[lights.lamp]\npoint = [0, 100, 0]\nintensity = [3, 3, 3]\ndirection = [1, 0, 0]\nangle_degrees = 20";
+    let spot = "[lights.lamp]\npoint = [0, 100, 0]\nintensity = [3, 3, 3]\ndirection = [1, 0, 0]\n\
+                angle_degrees = 20";
     assert_eq!(lands(&floor_under(spot)).0, 0.0);
 }
 

@@ -17,12 +17,11 @@ macro_rules! commands {
             fn of(addresses: &BTreeMap<String, usize>) -> Self {
                 Self {
                     $($field: {
+                        type Command = unsafe extern "system" fn($($argument),*);
                         let address = std::ptr::with_exposed_provenance::<c_void>(addresses[$name]);
                         assert!(!address.is_null(), $name);
                         // SAFETY: this is the address of the command of that name, which has this type.
-                        unsafe {
-                            std::mem::transmute::<*const c_void, unsafe extern "system" fn($($argument),*)>(address)
-                        }
+                        unsafe { std::mem::transmute::<*const c_void, Command>(address) }
                     },)*
                 }
             }

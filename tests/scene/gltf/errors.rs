@@ -59,7 +59,8 @@ fn compressed_vertices_are_refused_only_where_there_are_no_others() {
     made.refuses(&["meshes[0].primitives[0]", "KHR_draco_mesh_compression"]);
 
     let mut made = Made::square();
-    made.json["bufferViews"][0]["extensions"] = json!({"EXT_meshopt_compression": {"buffer": 0, "byteLength": 1, "byteStride": 4, "count": 1, "mode": "ATTRIBUTES"}});
+    made.json["bufferViews"][0]["extensions"] = json!({"EXT_meshopt_compression":
+        {"buffer": 0, "byteLength": 1, "byteStride": 4, "count": 1, "mode": "ATTRIBUTES"}});
     assert!(made.load().is_ok());
     made.json["bufferViews"][0]["buffer"] = json!(1);
     let text = made.text().replace("\"buffers\":[", "\"buffers\":[{\"byteLength\":1},");

@@ -37,7 +37,8 @@ fn a_primitive_without_a_material_has_that_of_the_format() {
 fn transmission_is_thin_without_a_volume_and_solid_with_one() {
     let glass = |extensions: Value| {
         made_of(&json!({
-            "pbrMetallicRoughness": {"baseColorFactor": [1, 0.5, 0.25, 1], "metallicFactor": 0, "roughnessFactor": 0},
+            "pbrMetallicRoughness":
+                {"baseColorFactor": [1, 0.5, 0.25, 1], "metallicFactor": 0, "roughnessFactor": 0},
             "extensions": extensions,
         }))
         .scattering
