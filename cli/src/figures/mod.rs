@@ -38,20 +38,23 @@ const TOO_LARGE: u32 = 4;
 /// the walls; not if the median is 0. The folder gets figures.png, figures.json and each picture.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
-    #[command(flatten)]
-    source: Source,
-
     /// Folder to write to; made if it is missing.
     #[arg(short, long, default_value = "figures", value_name = "FOLDER")]
+    #[arg(help_heading = "Input and output")]
     output: PathBuf,
+
+    #[command(flatten)]
+    source: Source,
 
     /// Seeds that the reference is averaged over.
     #[arg(long, default_value_t = 32, value_name = "NUMBER", allow_negative_numbers = true)]
     #[arg(value_parser = whole_checked_later(2..=u32::MAX))]
+    #[arg(help_heading = "Photons")]
     reference_seeds: u32,
 
     /// Print one JSON object instead of a table.
     #[arg(long)]
+    #[arg(help_heading = "Input and output")]
     json: bool,
 }
 
@@ -101,7 +104,7 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     let source = &args.source;
     if args.reference_seeds < 2 {
         bail!(
-            "--reference-seeds {} is not possible: two halves tell the noise, give at least 2",
+            "--reference-seeds {} is not possible: the noise is found from two halves; give at least 2",
             args.reference_seeds
         );
     }

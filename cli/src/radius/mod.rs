@@ -33,6 +33,7 @@ pub(crate) struct Args {
     /// Radius map to write: .exr (u32 channel "radius", settings as attributes), .npy (u32), or .png (a
     /// picture).
     #[arg(short, long, value_name = "FILE")]
+    #[arg(help_heading = "Input and output")]
     output: PathBuf,
 
     #[command(flatten)]
@@ -40,28 +41,34 @@ pub(crate) struct Args {
 
     /// Compute even where sums may round or wrap, to see how wrong it gets.
     #[arg(long)]
+    #[arg(help_heading = "Exactness")]
     allow_inexact: bool,
 
     /// Compare with the definition on the CPU; exit 1 on a difference.
     #[arg(long)]
+    #[arg(help_heading = "Exactness")]
     verify: bool,
 
     /// Prove the result on the GPU: each radius by two boxes, each table entry by the counts; exit 1 if
     /// something is not proved. For the summed-area table.
     #[arg(long, conflicts_with_all = ["allow_inexact", "mask"])]
+    #[arg(help_heading = "Exactness")]
     certify: bool,
 
     /// Also write a map that is 1 where MR ended the search with too few photons, else 0.
     #[arg(long, value_name = "FILE")]
+    #[arg(help_heading = "Input and output")]
     limited_mask: Option<PathBuf>,
 
     /// Map of the pixels that need a radius: those that are 0 in it get 0, and cost next to nothing. EXR,
     /// NPY, or any PNG, 1 bit and colours too: black pixels are 0, and so are wholly transparent ones.
     #[arg(long, value_name = "FILE")]
+    #[arg(help_heading = "Input and output")]
     mask: Option<PathBuf>,
 
     /// Channel to read if the EXR has several.
     #[arg(long, value_name = "NAME")]
+    #[arg(help_heading = "Input and output")]
     channel: Option<String>,
 
     /// OpenGL device: auto, egl, egl:INDEX, osmesa, or part of a renderer's name.
@@ -70,6 +77,7 @@ pub(crate) struct Args {
 
     /// Print one JSON object instead of a table.
     #[arg(long)]
+    #[arg(help_heading = "Input and output")]
     json: bool,
 }
 
