@@ -93,7 +93,7 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     let emission = Emission::new(&scene, &settings)?;
     let threads = args.threads.unwrap_or(0);
     if args.threads == Some(0) {
-        bail!("--threads 0 is not possible: nobody would trace; give at least 1");
+        bail!("--threads 0 is not possible: give at least 1");
     }
     let pool =
         rayon::ThreadPoolBuilder::new().num_threads(threads).build().context("can't start the threads")?;

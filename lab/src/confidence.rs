@@ -147,7 +147,7 @@ mod tests {
         let half = 12.706_205 * 2.0_f64.ln();
         assert!((low.ln() - (0.25_f64.ln() - half)).abs() < 1e-4, "{low}");
         assert!((high.ln() - (0.25_f64.ln() + half)).abs() < 1e-4, "{high}");
-        assert!(!ratio.is_below_one() && !ratio.is_above_one(), "two pairs so far apart tell nothing");
+        assert!(!ratio.is_below_one() && !ratio.is_above_one(), "two pairs so far apart do not decide");
         let sure = RatioInterval::of(&[(1.0, 2.0), (1.0, 2.0)]).unwrap();
         assert!(sure.is_below_one() && !sure.is_above_one());
         assert!(RatioInterval::of(&[(2.0, 1.0), (2.1, 1.0)]).unwrap().is_above_one());

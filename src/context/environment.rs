@@ -71,7 +71,8 @@ pub(super) fn obstacle_of_osmesa(get: Get<'_>) -> Option<Refusal> {
     let name = "GALLIUM_DRIVER";
     let foreign = get(name).filter(|value| !value.is_empty() && !SOFTWARE.contains(&value.as_str()));
     let of_driver = foreign.map(|value| {
-        let reason = format!("the environment sets {name}={value}, and OSMesa knows llvmpipe and softpipe");
+        let reason =
+            format!("the environment sets {name}={value}, and OSMesa has only llvmpipe and softpipe");
         Refusal::new(reason, format!("use EGL (--device egl), or unset {name}"))
     });
     of_driver.or_else(|| version_override(get)).or_else(|| no_llvm(get))
@@ -229,7 +230,7 @@ mod tests {
     #[test]
     fn osmesa_knows_fewer_drivers() {
         let zink = with(&[("GALLIUM_DRIVER", "zink")], obstacle_of_osmesa).unwrap();
-        assert!(zink.reason.contains("OSMesa knows llvmpipe and softpipe"), "{zink:?}");
+        assert!(zink.reason.contains("OSMesa has only llvmpipe and softpipe"), "{zink:?}");
         assert_eq!(
             with(&[("MESA_LOADER_DRIVER_OVERRIDE", "zink")], obstacle_of_osmesa),
             None,

@@ -95,7 +95,7 @@ pub fn candidates() -> (Vec<Candidate>, Vec<Missing>) {
 
 #[cfg(not(all(feature = "egl", feature = "osmesa", not(target_vendor = "apple"))))]
 fn not_built(platform: DeviceChoice, feature: &str) -> Missing {
-    let remedy = format!("build with the feature {feature}, which Apple's systems can't have of EGL");
+    let remedy = format!("build with the feature {feature}; on Apple's systems there is no EGL");
     Missing { platform, refusal: Refusal::new("not part of this build", remedy) }
 }
 

@@ -120,6 +120,6 @@ mod tests {
         assert_eq!(of(ErrorKind::NotFound).reason, "there is no /dev/dri/card0 here");
         assert!(of(ErrorKind::NotFound).remedy.contains("--device /dev/dri"));
         assert!(of(ErrorKind::Other).remedy.contains("find out why"));
-        assert!(of(ErrorKind::PermissionDenied).remedy.contains("find out why"), "nobody knows its group");
+        assert!(of(ErrorKind::PermissionDenied).remedy.contains("find out why"), "its group is not known");
     }
 }

@@ -9,7 +9,7 @@ use glow::HasContext as _;
     feature = "serde",
     expect(
         clippy::unsafe_derive_deserialize,
-        reason = "plain data: what is unsafe asks a context, and guards nothing"
+        reason = "plain data: the unsafe code reads from a context, and keeps no invariant"
     )
 )]
 pub struct DeviceInfo {

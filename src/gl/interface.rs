@@ -83,8 +83,8 @@ impl Interface {
                 comment.push(sentence.trim());
             } else if line.starts_with("uniform ") || line.starts_with("layout(") {
                 is_comment_open = false;
-                let (mut variable, place) =
-                    declaration(line, stage).unwrap_or_else(|| panic!("a declaration like no other: {line}"));
+                let (mut variable, place) = declaration(line, stage)
+                    .unwrap_or_else(|| panic!("a declaration that is not understood: {line}"));
                 // One comment may explain several declarations below it.
                 variable.meaning = comment.join(" ");
                 if place == Place::Target {
@@ -249,7 +249,7 @@ void main()
     }
 
     #[test]
-    #[should_panic(expected = "a declaration like no other")]
+    #[should_panic(expected = "a declaration that is not understood")]
     fn a_declaration_that_can_t_be_read_is_no_silence() {
         Interface::default().read("uniform float weights[4] = float[4](1);\n", ShaderStage::Fragment, &[]);
     }

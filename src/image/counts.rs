@@ -240,9 +240,7 @@ impl Counts {
         let (x, y) = (index % self.size.x as usize, index / self.size.x as usize);
         let (what, remedy) = match self.meaning {
             Meaning::Counts => ("are not counts", reason.remedy()),
-            Meaning::Mask => {
-                ("say neither yes nor no", "give 0 where no radius is needed, else another number")
-            }
+            Meaning::Mask => ("are not numbers", "give 0 where no radius is needed, else another number"),
         };
         Err(Problem::new(
             format!(

@@ -85,14 +85,12 @@ impl<'a> Emission<'a> {
             shining.iter().zip(&aims).map(|(light, aim)| sent(light, aim.as_ref()).element_sum()).collect();
         let Some(counts) = counts(&weights, settings.photons) else {
             let lights = shining.len();
-            return refuse(format!(
-                "each of the {lights} lights takes at least one; ask for {lights} or more"
-            ));
+            return refuse(format!("each of the {lights} lights takes at least one; give {lights} or more"));
         };
         let (mut parts, mut first) = (Vec::new(), 0);
         for ((light, aim), count) in shining.iter().zip(aims).zip(counts) {
             if !(light.flux() / f64::from(count)).as_vec3().is_finite() {
-                return refuse(format!("the light \"{}\" is brighter than f32 can tell", light.name));
+                return refuse(format!("the light \"{}\" is brighter than f32 can hold", light.name));
             }
             parts.push(Part { shape: &light.shape, first, count, aim });
             first += count;

@@ -18,8 +18,8 @@ const WIDTH: u16 = 80;
 const QUIET: f64 = 0.2;
 /// What the rows of situations are.
 const SITUATIONS: &str = "\
-empty to added: frames of a table by a scan, without photons (as the host knows,\n\
-or unknown to it), with those of a quarter, unchanged, after an edit of 64 x 64\n\
+empty to added: frames of a table by a scan, without photons (declared by the\n\
+host, or not), with those of a quarter, unchanged, after an edit of 64 x 64\n\
 pixels in the middle or the lower left corner, with photons in addition;\n\
 none-masked, half-masked: searches with a mask.";
 
@@ -128,7 +128,7 @@ fn print_warnings(report: &Report) -> Result<()> {
         let cause = if report.device.software {
             ": something else took the processor"
         } else {
-            ", which should not be: trust these rows less"
+            ", which should not happen; these rows are less reliable"
         };
         output::print(&format!(
             "!: has some of the {suspect} in {samples} samples in which query and clock contradict each\n\
@@ -178,7 +178,7 @@ pub(super) fn print_comparison(old: &Report, new: &Report) -> Result<()> {
     if old.device == new.device {
         output::print_facts(&device_facts(&new.device))?;
     } else {
-        output::print("two devices: the ratios tell of them, not of the program alone")?;
+        output::print("two devices: the ratios compare them as well, not the program alone")?;
         for (name, report) in [("old", old), ("new", new)] {
             output::print(&format!("{name}: {} ({})", report.device.renderer, report.device.driver))?;
         }

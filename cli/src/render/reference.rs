@@ -26,7 +26,7 @@ pub(super) fn render(
     seeds: u32,
 ) -> Result<Outcome> {
     if seeds == 0 {
-        bail!("--reference 0 is not possible: a mean takes at least 1 seed");
+        bail!("--reference 0 is not possible: give at least 1 seed");
     }
     let trace = args.source.trace();
     let bar = Bar::new();

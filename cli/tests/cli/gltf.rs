@@ -120,7 +120,11 @@ fn textures_that_are_not_read_are_told() {
         ],
     );
     let found = warnings(&mesh, &[("none.png", b"RIFF\x10\0\0\0WEBPVP8 ")]);
-    assert!(found[0].contains("none.png: it is WebP, and only PNG and JPEG are supported"), "{}", found[0]);
+    assert!(
+        found[0].contains("none.png: it is image/webp, and only PNG and JPEG are supported"),
+        "{}",
+        found[0]
+    );
 }
 
 #[test]

@@ -64,7 +64,7 @@ impl Rival {
                 return Err(Error::Setting {
                     name: "edges",
                     value: format!("{:?}", search.edges).to_lowercase(),
-                    reason: "a search for the nearest photons knows zero edges only".to_owned(),
+                    reason: "a search for the nearest photons supports zero edges only".to_owned(),
                 });
             }
         })

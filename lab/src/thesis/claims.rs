@@ -211,7 +211,7 @@ mod tests {
             let Judged { claim, judgement, .. } = one;
             if matches!(claim.group, Group::Timed | Group::Future | Group::Listing) {
                 assert_eq!(judgement.verdict, Verdict::CannotBeTested, "{}", claim.id);
-                assert!(!judgement.note.is_empty(), "{} says why", claim.id);
+                assert!(!judgement.note.is_empty(), "{} has a reason", claim.id);
             }
         }
     }

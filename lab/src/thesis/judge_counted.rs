@@ -63,7 +63,7 @@ pub(super) fn counted(id: &str, evidence: &Evidence) -> Option<Judgement> {
             "Each level is a quarter of the one below: 1 + 1/4 + 1/16 + ... = 4/3.",
         ),
         "edges-zero" => match &evidence.edges {
-            None => Judgement::untested("no map was looked at"),
+            None => Judgement::untested("no map was measured"),
             Some(radii) => Judgement::confirmed_if(
                 radii.smaller == 0 && radii.larger > 0,
                 larger_smaller(radii),
@@ -132,7 +132,7 @@ pub(super) fn listing(id: &str, evidence: &Evidence) -> Option<Judgement> {
     };
     let rows: Vec<_> = evidence.faults.iter().filter(|row| row.fault == fault).collect();
     if rows.is_empty() {
-        return Some(Judgement::untested("no map was looked at"));
+        return Some(Judgement::untested("no map was measured"));
     }
     let wrong = rows.iter().any(|row| !row.difference.is_none());
     let ours: Vec<String> = rows
@@ -211,7 +211,7 @@ fn floats(evidence: &Evidence) -> Judgement {
     let wrong: Vec<_> = evidence.floats.iter().filter(|row| !row.difference.is_none()).collect();
     let Some(first) = wrong.iter().min_by_key(|row| row.total) else {
         return match evidence.floats.iter().map(|row| row.total).max() {
-            None => Judgement::untested("no map was looked at"),
+            None => Judgement::untested("no map was measured"),
             Some(most) => Judgement::new(Verdict::HoldsHereOnly, format!("right up to {most} photons"), ""),
         };
     };

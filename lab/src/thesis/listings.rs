@@ -150,7 +150,7 @@ fn radius_by_float_table(density: &Image<u32>, search: Search) -> Image<u32> {
 
 fn float_table(density: &Image<u32>) -> Image<f32> {
     let size = density.size();
-    #[expect(clippy::cast_precision_loss, reason = "the rounding of f32 is what is looked at")]
+    #[expect(clippy::cast_precision_loss, reason = "the rounding of f32 is what is tested")]
     let mut table = density.map(|count| count as f32);
     for axis in [UVec2::X, UVec2::Y] {
         let mut step = 1;

@@ -23,8 +23,12 @@ pub(super) fn check_lossless(compression: Compression, sample_type: SampleType) 
         _ => false,
     };
     if is_lossy {
-        let problem =
-            format!("{compression} of {sample_type:?} samples is lossy, so that values may be altered");
+        let samples = match sample_type {
+            SampleType::F16 => "f16",
+            SampleType::F32 => "f32",
+            SampleType::U32 => "u32",
+        };
+        let problem = format!("{compression} of {samples} samples is lossy, so that values may be altered");
         return Err(Problem::new(problem, REMEDY));
     }
     check_supported(compression)

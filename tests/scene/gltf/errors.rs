@@ -94,7 +94,7 @@ fn numbers_of_the_wrong_kind_are_told() {
     made.refuses(&[place, "indices: it holds numbers with a fraction"]);
     made.json["accessors"][1]["componentType"] = json!(U16);
     made.json["accessors"][0]["type"] = json!("VEC2");
-    made.refuses(&[place, "attributes.POSITION: it holds Vec2 and not 3 numbers an item"]);
+    made.refuses(&[place, "attributes.POSITION: it holds VEC2 and not 3 numbers an item"]);
     made.json["accessors"][0]["componentType"] = json!(5130);
     made.refuses(&[place, "attributes.POSITION: its type of numbers is not known"]);
 

@@ -89,7 +89,10 @@ impl State {
         let reference = read_colours(path)?;
         let (size, wanted) = (reference.size(), self.engine.maps().size);
         if self.engine.is_map() {
-            bail!("{}: a picture; a reference is for scenes, and this is a map", path.display());
+            bail!(
+                "{}: a picture is a reference for scenes, and a map is open\nhelp: open a scene first",
+                path.display()
+            );
         }
         if size != wanted {
             bail!(

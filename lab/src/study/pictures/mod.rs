@@ -108,7 +108,7 @@ impl PictureStudy {
             ("kernels", self.kernels.is_empty()),
         ] {
             if is_empty {
-                return refuse(name, "nothing".to_owned(), "the study compares some; give at least one");
+                return refuse(name, "nothing".to_owned(), "give at least one");
             }
         }
         for scene in &self.scenes {
@@ -116,17 +116,18 @@ impl PictureStudy {
         }
         for &radius in &self.fixed {
             if !(1..=MAX_PICTURE_RADIUS).contains(&radius) {
-                return refuse("fixed", radius.to_string(), "a kernel's radius goes from 1 to 96 pixels");
+                let reason = format!("a kernel's radius goes from 1 to {MAX_PICTURE_RADIUS} pixels");
+                return refuse("fixed", radius.to_string(), &reason);
             }
         }
         if self.photons.contains(&0) || self.reference_photons == 0 {
-            return refuse("photons", "0".to_owned(), "no photon means no light; ask for at least 1");
+            return refuse("photons", "0".to_owned(), "give at least 1");
         }
         if self.seeds == 0 {
-            return refuse("seeds", "0".to_owned(), "a picture takes at least one; 3 tell how sure it is");
+            return refuse("seeds", "0".to_owned(), "give at least 1; an interval takes 2 or more");
         }
         if self.reference_seeds == 0 || self.reference_seeds % 2 == 1 {
-            let reason = "two halves tell the reference's noise; give an even number";
+            let reason = "the reference's noise is found from two halves; give an even number";
             return refuse("reference_seeds", self.reference_seeds.to_string(), reason);
         }
         self.min_photons
