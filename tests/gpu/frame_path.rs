@@ -275,7 +275,7 @@ fn adaptive_pipeline(gl: &Gl) {
             check(gl, &format!("adaptive frame {frame}"), &log);
             fetched += log.iter().filter(|call| call.name == "glGetBufferSubData").count();
         }
-        // The GPU gets done, so that the next frame finds a census.
+        // The GPU finishes, so that the next frame finds a census.
         // SAFETY: the context is current.
         unsafe { gl.glow().finish() };
     }

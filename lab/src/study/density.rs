@@ -132,7 +132,7 @@ pub fn run<E>(
             .map(|width| {
                 let corrections: &[bool] = match width {
                     Width::Holding(_) => &[false, true],
-                    // It does not depend on the photons.
+                    // Its size does not depend on the photons, so that there is nothing to correct.
                     Width::Fixed(_) => &[false],
                 };
                 let found: Vec<Boxes> =
