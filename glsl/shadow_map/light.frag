@@ -60,8 +60,8 @@ bool is_lit(vec3 from)
         known = primitive;
         is_crack = is_crack && found == BESIDE;
     }
-    // Where all four see triangles before the pixel, a small one of a mesh was between them: no texel's
-    // middle saw it.
+    // Where all four see triangles before the pixel, a small one of a mesh is between them, which no texel's
+    // middle hits.
     return !is_crack;
 }
 

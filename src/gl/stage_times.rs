@@ -58,7 +58,7 @@ pub(super) struct Recorder {
     recorded: VecDeque<Frame>,
     /// Fetched ones, to be used again.
     free: Vec<Frame>,
-    /// When the pass in hand began, by the clock.
+    /// When the current pass began, by the clock.
     began: Instant,
 }
 

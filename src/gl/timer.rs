@@ -49,7 +49,7 @@ impl Sample {
 pub struct Timer {
     gl: Gl,
     query: Query,
-    /// llvmpipe stamps the begin of a query while it rasterises the frame in hand: too late if that frame is
+    /// llvmpipe stamps the begin of a query while it rasterises the current frame: too late if that frame is
     /// the timed work, and never if there is none. There, a frame of one pixel is put before the begin and
     /// another finished right after it.
     llvmpipe_frame: Option<Target>,

@@ -192,7 +192,7 @@ impl Program<'_> {
         self.display.fake(BUTTON_RELEASE_EVENT, 1, to);
     }
 
-    /// Does something while the program is too busy to see it.
+    /// Does something while the program is too busy to react.
     pub(crate) fn while_busy(&self, act: impl FnOnce()) {
         let signal = |name: &str| {
             let status = Command::new("kill").args([name, &self.child.id().to_string()]).status().unwrap();

@@ -64,9 +64,9 @@ impl LargerSmaller {
 pub struct Evidence {
     /// Fetches and stack depths.
     pub pyramid_costs: Vec<PyramidCost>,
-    /// What each fault spoils, on [`Evidence::map`] and on one on which each fault shows.
+    /// Which radii each fault makes wrong, on [`Evidence::map`] and on one on which each fault shows.
     pub faults: Vec<FaultRow>,
-    /// What a table in f32 spoils on it.
+    /// Which radii a table in f32 makes wrong on it.
     pub floats: Vec<FloatRow>,
     /// Radii with nothing outside against scaled ones, on it.
     pub edges: Option<LargerSmaller>,

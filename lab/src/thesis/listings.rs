@@ -1,4 +1,5 @@
-//! What the faults of the listings spoil, and where a table in f32 breaks: on any map, without OpenGL.
+//! Which radii the faults of the listings make wrong, and where a table in f32 breaks: on any map, without
+//! OpenGL.
 
 use std::collections::BTreeSet;
 

@@ -5,7 +5,7 @@
 //! - [`counted`], [`example`]: costs that need no clock: fetches, stack depths, and the map of Figures 3.2 to
 //!   3.4.
 //! - [`density`]: how dense the unpublished input was, as inferred from the tables, and maps of that density.
-//! - [`listings`]: what the faults of the listings spoil, and where a table in f32 breaks.
+//! - [`listings`]: which radii the faults of the listings make wrong, and where a table in f32 breaks.
 //! - [`claims`]: every statement that can be checked, and how it is judged from the [`evidence`].
 
 pub mod claims;

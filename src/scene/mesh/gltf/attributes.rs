@@ -112,7 +112,7 @@ impl Attributes<'_> {
             let (scale, offset) = (Vec2::from(transform.scale.0), Vec2::from(transform.offset.0));
             for one in &mut coordinates {
                 let Vec2 { x, y } = *one * scale;
-                // Counter-clockwise as one sees it, with the second coordinate downwards.
+                // Counter-clockwise as seen, with the second coordinate downwards.
                 *one = Vec2::new(cos * x + sin * y, cos * y - sin * x) + offset;
             }
         }

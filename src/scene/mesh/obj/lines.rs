@@ -56,7 +56,8 @@ impl<'a> Rest<'a> {
         let mut last = self.next()?;
         let number = self.number;
         let mut text = Cow::Borrowed(last);
-        // A comment that ends with a backslash, such as a Windows path, doesn't swallow the next line.
+        // A comment that ends with a backslash, such as a Windows path, doesn't make the next line part of
+        // it.
         while before_comment(last).len() == last.len()
             && let Some((b'\\', _)) = last.trim_ascii_end().split_last()
         {
