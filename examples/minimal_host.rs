@@ -29,7 +29,10 @@ const FULL_SCREEN: &str =
     "void main() { gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0, 0.0, 1.0); }";
 /// From black at radius 0 to white at MR.
 const SHOW: &str = "uniform usampler2D radii; uniform float max_radius; out vec4 colour;
-void main() { colour = vec4(vec3(float(texelFetch(radii, ivec2(gl_FragCoord.xy), 0).r) / max_radius), 1.0); }";
+void main() {
+    uint radius = texelFetch(radii, ivec2(gl_FragCoord.xy), 0).r;
+    colour = vec4(vec3(float(radius) / max_radius), 1.0);
+}";
 
 fn main() -> Result<()> {
     let picture = std::env::args().nth(1);
@@ -75,7 +78,8 @@ fn main() -> Result<()> {
     // Step 8: each frame.
     let radii = pipeline.render(&density)?.texture();
 
-    // Step 9: the radii in the host's own shader; program, vertex array and viewport are as it left them but for its own changes.
+    // Step 9: the radii in the host's own shader; program, vertex array and viewport are as it left them but
+    // for its own changes.
     let shown = texture(glow, glow::RGBA8, (glow::RGBA, glow::UNSIGNED_BYTE), size)?;
     let mut pixels = vec![0_u8; 4 * usize::from(SIDE) * usize::from(SIDE)];
     // SAFETY: the context is current, and `pixels` has room for all of them.
@@ -99,7 +103,8 @@ fn main() -> Result<()> {
         image::save_buffer(&path, &pixels, SIDE.into(), SIDE.into(), image::ColorType::Rgba8)?;
     }
 
-    // Step 10: a new size takes new textures and keeps the shaders. Everything goes while the context is current, in any order.
+    // Step 10: a new size takes new textures and keeps the shaders. Everything goes while the context is
+    // current, in any order.
     pipeline.resize(map_size / 2)?;
     Ok(())
 }

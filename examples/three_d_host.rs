@@ -1,7 +1,8 @@
 //! The three-d engine as the host: its g-buffer and our light by photons, in its own frame.
 //!
-//! three-d draws a room with its own lights, and a g-buffer of it; photons light the room once more, and three-d shows that,
-//! and the radii, through an effect of its own. Its first picture comes out the same before and after our calls.
+//! three-d draws a room with its own lights, and a g-buffer of it; photons light the room once more, and
+//! three-d shows that, and the radii, through an effect of its own. The engine's own picture is the same
+//! before and after our calls.
 //!
 //! `cargo run --example three_d_host [PICTURE.png]`
 
@@ -89,7 +90,8 @@ fn main() -> Result<()> {
         save(&path, &[&after, &lit, &of_radii])?;
     }
 
-    // Step 10: a new size takes new textures and keeps the shaders. Everything goes while the context is current, in any order.
+    // Step 10: a new size takes new textures and keeps the shaders. Everything goes while the context is
+    // current, in any order.
     light.resize(size / 2)?;
     Ok(())
 }
@@ -206,7 +208,7 @@ impl Target {
             let material = Normals { number: number.into() };
             target.render_with_material(&material, &room.camera, [&body.geometry], &[]);
         }
-        // three-d keeps its names to itself, and OpenGL does not.
+        // three-d does not give its names away; OpenGL does.
         let mut names = [0; 2];
         target.write(|| {
             names = [glow::COLOR_ATTACHMENT0, glow::DEPTH_ATTACHMENT].map(|attachment| {

@@ -1,5 +1,5 @@
-// Photons in each tile of the map, whose side is CENSUS_SIDE pixels.
-// Follows a counter that defines: uint count_in_box(ivec2 lo, ivec2 hi), both corners included and inside the map.
+// Photons in each tile of the map, whose side is CENSUS_SIDE pixels. Follows a counter that defines: uint
+// count_in_box(ivec2 lo, ivec2 hi), both corners included and inside the map.
 
 // Columns and rows of the map, in pixels.
 uniform ivec2 map_size;

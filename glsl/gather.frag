@@ -1,4 +1,4 @@
-// The other way round: each pixel gathers the power of the pixels around it with its own radius.
+// Gathering: each pixel adds up the power of the pixels around it within its own radius.
 
 // Power of each pixel's photons, red, green and blue; a: their count.
 uniform sampler2D power;
@@ -35,7 +35,8 @@ void main()
     }
     vec3 irradiance = gathered / area;
 #ifdef COUNT_CORRECTION
-    // The radius ends at a photon, so that the disc holds one more than its share (thesis 2.4: the n nearest).
+    // The radius ends at a photon, so that the disc holds one more than its share (thesis 2.4: the n
+    // nearest).
     irradiance *= found > 1.0 ? (found - 1.0) / found : 0.0;
 #endif
     irradiance_and_found = vec4(irradiance, found);

@@ -10,7 +10,7 @@ uniform ivec2 map_size;
 // MR, in pixels.
 uniform int max_radius;
 
-// The radius in pixels; 0 where the mask asks for none.
+// The radius in pixels; 0 where the mask is 0.
 layout(location = 0) out uint radius;
 #ifdef LIMITED_MASK
 // 1 where MR ended the search with too few photons, else 0.
@@ -19,7 +19,7 @@ layout(location = 1) out uint limited;
 
 void main()
 {
-    // Helper fragments of a quad that lie outside the map run along.
+    // Helper fragments of a quad may lie outside the map.
     ivec2 pixel = min(ivec2(gl_FragCoord.xy), map_size - 1);
     int level = 0;
     int r = 0;

@@ -1,6 +1,6 @@
-// The smallest radius whose box holds enough photons (thesis 1.3, 3.5).
-// Follows a counter that defines: uint count_in_box(ivec2 lo, ivec2 hi), both corners included and inside the map
-// (BOX_UNCLIPPED: as they come, for a counter that clips by itself).
+// The smallest radius whose box holds enough photons (thesis 1.3, 3.5). Follows a counter that defines: uint
+// count_in_box(ivec2 lo, ivec2 hi), both corners included and inside the map (BOX_UNCLIPPED: as they come,
+// for a counter that clips by itself).
 
 // Columns and rows of the map, in pixels.
 uniform ivec2 map_size;
@@ -21,7 +21,7 @@ uniform usampler2D found_before;
 uniform usampler2D brackets;
 #endif
 
-// The radius in pixels; 0 where the mask asks for none.
+// The radius in pixels; 0 where the mask is 0.
 layout(location = 0) out uint radius;
 #ifdef LIMITED_MASK
 // 1 where MR ended the search with too few photons, else 0.
@@ -44,7 +44,7 @@ bool enough_within(ivec2 center, int r)
 
 void main()
 {
-    // Helper fragments of a quad that lie outside the map run along; off the map they could loop for ever.
+    // Helper fragments of a quad may lie outside the map; there they could loop forever.
 #ifdef GRID_STEP
     ivec2 center = min(GRID_STEP * ivec2(gl_FragCoord.xy) + GRID_STEP / 2, map_size - 1);
 #else
@@ -88,7 +88,7 @@ void main()
         }
     }
 #endif
-    // A bracket reaches past MR where the mask asks whether MR was enough.
+    // A bracket reaches past MR where the mask of limited pixels needs to know whether MR was enough.
     bool found = r <= max_radius;
     r = min(r, max_radius);
 #else
@@ -106,7 +106,7 @@ void main()
         }
     }
 #ifdef LIMITED_MASK
-    // The search never asks MR itself unless MR is 1.
+    // The search never counts MR itself unless MR is 1.
     found = found || enough_within(center, r);
 #endif
 #endif

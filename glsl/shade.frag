@@ -6,7 +6,8 @@ uniform sampler2D irradiance;
 uniform float scale;
 // Share of light that the surface reflects: red, green and blue, 0 to 1.
 uniform sampler2D albedo;
-// Radiance of direct light; a: 1 where the pixel shows a diffuse surface, 0 where it shows mirrors, glass, lights or nothing.
+// Radiance of direct light; a: 1 where the pixel shows a diffuse surface, 0 where it shows mirrors, glass,
+// lights or nothing.
 uniform sampler2D direct;
 // Radiance of indirect light that is seen in mirrors and through glass.
 uniform sampler2D seen_through;

@@ -3,10 +3,10 @@
 // MR, in pixels.
 uniform int max_radius;
 
-// MR; 0 where the mask asks for no radius.
+// MR; 0 where the mask is 0.
 layout(location = 0) out uint radius;
 #ifdef LIMITED_MASK
-// 1; 0 where the mask asks for no radius.
+// 1; 0 where the mask is 0.
 layout(location = 1) out uint limited;
 #endif
 

@@ -1,4 +1,4 @@
-//! Tells the reports which commit it was built from, where git knows.
+//! The commit that this is built from, for the reports, where git has one.
 
 use std::process::Command;
 

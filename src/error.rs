@@ -9,8 +9,8 @@ pub type Result<T, E = Error> = std::result::Result<T, E>;
 
 /// Everything that can go wrong through no fault of this library.
 ///
-/// A message says what happened and where; a line that starts with `help:` says what to do.
-/// Our own mistakes are panics, not errors.
+/// A message says what happened and where; a line that starts with `help:` says what to do. Bugs of the
+/// library are panics, not errors.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -27,8 +27,8 @@ pub enum Error {
 
     /// A scene that sends no light.
     #[error(
-        "no light of the scene shines\nhelp: give it one, such as [lights.lamp] with quad and radiance, or a material with \
-         emission"
+        "no light of the scene shines\nhelp: give it one, such as [lights.lamp] with quad and radiance, or a \
+         material with emission"
     )]
     NoLight,
 
@@ -43,7 +43,7 @@ pub enum Error {
         reason: String,
     },
 
-    /// The answer could be wrong by rounding or wrapping, and nobody allowed that.
+    /// The answer could be wrong by rounding or wrapping, and inexact answers are not allowed.
     #[error("the result would not be exact: {reason}\nhelp: {remedy}")]
     Inexact {
         /// Which number exceeds which limit.
@@ -115,10 +115,12 @@ pub enum Error {
         what: String,
     },
 
-    /// A call that counts or times by a query of its own, while one of that kind is running, which goes on undisturbed.
+    /// A call that counts or times by a query of its own, while one of that kind is running, which goes on
+    /// undisturbed.
     #[error(
         "a {kind} query is running, and OpenGL has one at a time\n\
-         help: end it before gl::Timer (GL_TIME_ELAPSED) or a certificate (GL_SAMPLES_PASSED), or leave those out"
+         help: end it before gl::Timer (GL_TIME_ELAPSED) or a certificate (GL_SAMPLES_PASSED), \
+         or leave those out"
     )]
     QueryRunning {
         /// The name of the GL enum.
@@ -127,9 +129,9 @@ pub enum Error {
 
     /// GL_OUT_OF_MEMORY. What the call had made is freed, and what was there before is as it was.
     #[error(
-        "OpenGL has no memory left for {what}{}; this library holds {held} bytes in this context\nhelp: ask for a smaller \
-         map, choose a method that holds less (`memory_required` says how much), or drop pipelines and maps that \
-         are no longer used",
+        "OpenGL has no memory left for {what}{}; this library holds {held} bytes in this context\n\
+         help: ask for a smaller map, choose a method that holds less (`memory_required` says how much), or \
+         drop pipelines and maps that are no longer used",
         bytes.map_or(String::new(), |bytes| format!(": {bytes} bytes"))
     )]
     OutOfMemory {
@@ -144,8 +146,8 @@ pub enum Error {
     /// The driver lost the context, as after a reset of the GPU, or the host gave it up
     /// ([`Gl::abandon`](crate::Gl::abandon)). All objects in it are gone.
     #[error(
-        "the OpenGL context is lost, and with it all maps and pipelines made in it\nhelp: make a new context, load it \
-         anew (`Gl::from_loader`), and make everything again"
+        "the OpenGL context is lost, and with it all maps and pipelines made in it\n\
+         help: make a new context, load it anew (`Gl::from_loader`), and make everything again"
     )]
     ContextLost,
 

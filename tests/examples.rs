@@ -1,4 +1,4 @@
-//! The examples run as they are printed: a minimal host, and an engine that others use.
+//! The examples run as they are documented: a minimal host, and an engine that others use.
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 

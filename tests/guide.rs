@@ -1,4 +1,4 @@
-//! The guide's figures are what the library says.
+//! The guide's figures are those of the library.
 
 use std::collections::BTreeSet;
 

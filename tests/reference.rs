@@ -1,4 +1,4 @@
-//! The definition on maps worked by hand, and what its companions count.
+//! The definition on maps worked by hand, and the costs that the other references count.
 
 use glam::UVec2;
 use proptest::prelude::*;
@@ -112,7 +112,8 @@ fn fetches(radius: u32, split: Split) -> (usize, usize) {
 
 #[test]
 fn fetches_are_those_of_the_thesis_where_it_counts_them() {
-    // Figure 3.4: 6 for radius 1 (6.3.2 says 5 at most) and 13 for radius 2; 6.3.2: as little as 34 for radius 8.
+    // Figure 3.4: 6 for radius 1 (6.3.2 says 5 at most) and 13 for radius 2; 6.3.2: as little as 34 for
+    // radius 8.
     assert_eq!(fetches(1, Split::Odd), (6, 6));
     assert_eq!(fetches(2, Split::Odd).1, 13);
     assert_eq!(fetches(8, Split::Odd), (34, 97));
@@ -244,7 +245,10 @@ proptest! {
     #[test]
     fn the_companions_agree_with_the_definition(
         (width, height) in (1..16_u32, 1..16_u32),
-        counts in proptest::collection::vec(prop_oneof![4 => Just(0_u32), 2 => 1..9_u32, 1 => Just(1000)], 256),
+        counts in proptest::collection::vec(
+            prop_oneof![4 => Just(0_u32), 2 => 1..9_u32, 1 => Just(1000)],
+            256,
+        ),
         min_photons in 1..60_u32,
         max_radius in 1..20_u32,
         scale: bool,

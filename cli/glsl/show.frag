@@ -1,5 +1,5 @@
-// What the window shows: one view of the maps, or two beside a line; row 0 is the top.
-// Views: 0 radiance, tone-mapped; 1 density and 2 radius in colours; 3 limited pixels marked; 4 error in colours.
+// What the window shows: one view of the maps, or two beside a line; row 0 is the top. Views: 0 radiance,
+// tone-mapped; 1 density and 2 radius in colours; 3 limited pixels marked; 4 error in colours.
 uniform ivec2 map_size;
 uniform vec2 origin;      // of the picture on the canvas, in canvas pixels
 uniform float scale;      // canvas pixels a pixel of the maps
@@ -28,13 +28,15 @@ vec3 encoded(vec3 radiance)
     radiance = max(radiance, 0.0) * exp2(exposure);
     float luminance = dot(radiance, vec3(0.2126, 0.7152, 0.0722));
     vec3 linear = clamp(radiance * (1.0 + luminance / (white * white)) / (1.0 + luminance), 0.0, 1.0);
-    return mix(12.92 * linear, 1.055 * pow(linear, vec3(1.0 / 2.4)) - 0.055, greaterThan(linear, vec3(0.0031308)));
+    vec3 curved = 1.055 * pow(linear, vec3(1.0 / 2.4)) - 0.055;
+    return mix(12.92 * linear, curved, greaterThan(linear, vec3(0.0031308)));
 }
 
 // By logarithm of value + 1, as the legend and `varikernel radius -o map.png` do.
 vec3 coloured(float value, vec2 range)
 {
-    float place = log((clamp(value, range.x, range.y) + 1.0) / (range.x + 1.0)) / log((range.y + 1.0) / (range.x + 1.0));
+    float clamped = clamp(value, range.x, range.y);
+    float place = log((clamped + 1.0) / (range.x + 1.0)) / log((range.y + 1.0) / (range.x + 1.0));
     return texelFetch(colours, ivec2(clamp(place, 0.0, 1.0) * 255.0 + 0.5, 0), 0).rgb;
 }
 

@@ -61,7 +61,7 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     Ok(if difference.is_none() { Outcome::Done } else { Outcome::Differs })
 }
 
-/// The channel is for the files that name theirs: an EXR may be compared with an NPY.
+/// The channel is for files with named channels: an EXR may be compared with an NPY.
 fn read(args: &Args, path: &Path) -> Result<Image<u32>> {
     let no_exr = |path: &PathBuf| !matches!(Format::of(path), Ok(Format::Exr));
     let named = Format::of(path)? == Format::Exr || [&args.a, &args.b].into_iter().all(no_exr);

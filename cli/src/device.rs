@@ -1,4 +1,5 @@
-//! Devices as the program opens them: where a driver may end the process, a child of the program tries it first.
+//! Devices as the program opens them: where a driver may end the process, a child of the program tries it
+//! first.
 
 use std::env;
 use std::io::Read;
@@ -11,16 +12,16 @@ use varikernel::context::{self, Candidate, DeviceChoice, Refusal};
 use varikernel::gl::{DeviceInfo, Gl};
 use varikernel::{Error, Result};
 
-/// A driver that takes longer does not answer any more.
+/// A driver that takes longer is taken to hang.
 const LIMIT: Duration = Duration::from_mins(1);
 
-/// What a device says when it is opened.
+/// The result of opening a device.
 #[derive(Clone, Serialize, Deserialize)]
 #[serde(untagged)]
 pub(crate) enum Answer {
     /// It works.
     Works {
-        /// What it says of itself.
+        /// What it reports about itself.
         info: DeviceInfo,
     },
     /// It does not.
@@ -55,8 +56,8 @@ impl From<Refusal> for Answer {
     }
 }
 
-/// Opens the device that is asked for. Where the environment sets what drivers read, each is tried in a child first: some values
-/// end the process that opens a device.
+/// Opens the device of that choice. Where the environment sets what drivers read, each is tried in a child
+/// first: some values end the process that opens a device.
 pub(crate) fn open(choice: &DeviceChoice) -> Result<Gl> {
     if context::driver_variables().is_empty() {
         return context::open(choice);
@@ -67,8 +68,8 @@ pub(crate) fn open(choice: &DeviceChoice) -> Result<Gl> {
     })
 }
 
-/// Whether a driver would end this process, for what opens a context in another way: tried as by [`open`], and an error only
-/// where every device fails and one does so by a crash.
+/// Whether a driver would end this process, for what opens a context in another way: tried as by [`open`],
+/// and an error only where every device fails and one does so by a crash.
 #[cfg(feature = "window")]
 pub(crate) fn check_for_crashes() -> Result<()> {
     if context::driver_variables().is_empty() {
@@ -97,7 +98,7 @@ pub(crate) fn answer_here(choice: &DeviceChoice) -> Answer {
     }
 }
 
-/// The answer of a device that a child of this program opens, whatever comes of the child.
+/// The answer of a device that a child of this program opens, whatever happens to the child.
 pub(crate) fn in_child(candidate: &Candidate) -> Answer {
     let mut command = match env::current_exe() {
         Ok(program) => Command::new(program),
@@ -141,7 +142,7 @@ fn answer_of(mut command: Command, limit: Duration) -> Answer {
 fn reader(pipe: Option<impl Read + Send + 'static>) -> thread::JoinHandle<Vec<u8>> {
     thread::spawn(move || {
         let mut bytes = Vec::new();
-        // What a broken pipe held so far is all that there is.
+        // A broken pipe gives no more than it held so far.
         let _read = pipe.map(|mut pipe| pipe.read_to_end(&mut bytes));
         bytes
     })
@@ -163,10 +164,10 @@ fn wait(child: &mut Child, limit: Duration) -> std::io::Result<Option<ExitStatus
     }
 }
 
-/// With the first of the driver's own words, if it said any.
+/// With the first line that the driver printed, if it did.
 fn with_words(error: String, words: &str) -> String {
     let lines = || words.lines().filter(|line| !line.trim().is_empty());
-    // What Mesa says is nearer to the cause than what a library below it remarks on the way.
+    // Mesa's messages are closer to the cause than those of the libraries below it.
     let of_mesa = |line: &&str| line.starts_with("MESA") || line.starts_with("libEGL");
     match lines().find(of_mesa).or_else(|| lines().next()) {
         Some(line) => format!("{error}; the driver says: {}", line.trim()),

@@ -10,7 +10,8 @@ use super::{Outcome, output};
 
 /// List every OpenGL device that was found, why any of them failed, and what helps.
 ///
-/// Each is tried in a process of its own, so that a driver that crashes is an answer too. Exit code 2 if none works.
+/// Each is tried in a process of its own, so that a driver's crash is reported like any other failure. Exit
+/// code 2 if none works.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
     /// Print one JSON object instead of a table.
@@ -67,7 +68,7 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
         print_listing(&listing)?;
     }
     if listing.devices.iter().all(|entry| matches!(entry.answer, Answer::Fails { .. })) {
-        // As where any device is to be opened, by the answers that are known.
+        // As for opening any device, by the answers that are known.
         context::open_by(&DeviceChoice::Auto, &mut |candidate| Err(known(&listing, &candidate.choice)))?;
     }
     Ok(Outcome::Done)

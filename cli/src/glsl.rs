@@ -1,4 +1,4 @@
-//! `varikernel glsl`: our shaders as text, for engines that bring their own code.
+//! `varikernel glsl`: our shaders as text, for engines with code of their own.
 
 use std::fs;
 use std::io::Write as _;
@@ -18,8 +18,8 @@ use super::{Outcome, output};
 
 /// Print shaders as one variant compiles them, with a table of what they read and write.
 ///
-/// For those who bring their own engine code. Conditions are decided and defines put in; the options choose the variant, as
-/// they do for `radius` and `render`. No OpenGL is needed.
+/// For engines with code of their own. Conditions are decided and defines put in; the options choose the
+/// variant, as they do for `radius` and `render`. No OpenGL is needed.
 #[derive(Debug, clap::Args)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
 pub(crate) struct Args {
@@ -29,15 +29,19 @@ pub(crate) struct Args {
 
     /// List the shaders of the variant, in the order of a frame.
     #[arg(long, conflicts_with_all = ["name", "output", "stage"])]
+    #[arg(help_heading = "Input and output")]
     list: bool,
 
     /// What to print or write of a shader.
     #[arg(long, value_enum, default_value_t = Stages::Both)]
+    #[arg(help_heading = "Input and output")]
     stage: Stages,
 
-    /// Write instead of printing: with NAME and one --stage a file, with NAME and both stages a folder for two; without NAME
-    /// a folder for all shaders of the variant, and for shaders.json, their tables. A folder is made if it is missing.
+    /// Write instead of printing: with NAME and one --stage a file, with NAME and both stages a folder for
+    /// two; without NAME a folder for all shaders of the variant, and for shaders.json, their tables. A
+    /// folder is made if it is missing.
     #[arg(short, long, value_name = "FILE|FOLDER")]
+    #[arg(help_heading = "Input and output")]
     output: Option<PathBuf>,
 
     #[command(flatten)]
@@ -45,26 +49,32 @@ pub(crate) struct Args {
 
     /// The host's density map: r32ui, also for GL_R16UI and GL_R8UI, or r32f.
     #[arg(long, value_enum, default_value_t = Density::R32ui)]
+    #[arg(help_heading = "Host's textures")]
     density: Density,
 
     /// With a second target that is 1 where MR ended the search with too few photons, else 0.
     #[arg(long)]
+    #[arg(help_heading = "Host's textures")]
     limited_mask: bool,
 
     /// With a mask of the pixels that need a radius.
     #[arg(long)]
+    #[arg(help_heading = "Host's textures")]
     mask: bool,
 
     /// Falloff of a kernel from its middle to its edge.
     #[arg(long, value_enum, default_value_t = Kernel::Silverman)]
+    #[arg(help_heading = "Kernels")]
     kernel: Kernel,
 
     /// Width of the kernels: `variable`, or `fixed:PIXELS` for the same everywhere.
     #[arg(long, default_value = "variable", value_parser = parse_radius, value_name = "RADIUS")]
+    #[arg(help_heading = "Kernels")]
     radius: RadiusChoice,
 
     /// Print one JSON object instead of text.
     #[arg(long)]
+    #[arg(help_heading = "Input and output")]
     json: bool,
 }
 
@@ -93,7 +103,7 @@ enum Density {
     R32f,
 }
 
-/// A shader for machines.
+/// A shader in JSON.
 #[derive(Serialize)]
 struct Shader {
     name: String,
@@ -180,7 +190,7 @@ fn named<'a>(sources: &'a [ShaderSource], name: &str) -> Result<&'a ShaderSource
     })
 }
 
-/// Names that hold the word or are spelled much like it, the nearest first.
+/// Names that contain `name` or are spelled much like it, the nearest first.
 fn near_matches(sources: &[ShaderSource], word: &str) -> Vec<String> {
     let likeness = |name: &str| {
         if name.contains(word) { 1.0 } else { strsim::normalized_damerau_levenshtein(name, word) }

@@ -1,4 +1,5 @@
-//! What happens when the program is told to end: no unfinished file stays, and whoever told it sees that it ended so.
+//! What happens when a signal ends the program: no unfinished file stays, and the exit status shows the
+//! signal.
 
 use varikernel::image::discard_unfinished_files;
 
@@ -31,8 +32,8 @@ fn listen() -> std::io::Result<()> {
     Ok(())
 }
 
-/// The signals that whoever started this wants ignored, as `nohup` does with that of a closed terminal: one bit each, the
-/// lowest for signal 1. Where the system does not tell, none.
+/// The signals that the parent process set to be ignored, as `nohup` does with that of a closed terminal: one
+/// bit each, the lowest for signal 1. None where the system does not report them.
 #[cfg(unix)]
 fn ignored_signals() -> u64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();

@@ -53,7 +53,8 @@ Examples:
 /// (E. W. Bjønnes, Oslo 2010). Exit codes: 0 done, 1 the maps differ, are not
 /// proved or a promise is broken, 2 it could not be done.
 #[derive(Debug, Parser)]
-#[command(name = "varikernel", version, max_term_width = 100, arg_required_else_help = true, after_help = EXAMPLES)]
+#[command(name = "varikernel", version, max_term_width = 100)]
+#[command(arg_required_else_help = true, after_help = EXAMPLES)]
 struct Cli {
     #[command(subcommand)]
     verb: Verb,
@@ -83,7 +84,7 @@ enum Verb {
     Devices(devices::Args),
 }
 
-/// What a verb that did its job found.
+/// The result of a verb that succeeded.
 pub(crate) enum Outcome {
     Done,
     /// The answer to "are they equal?", "is it proved?" or "is it kept?" is no.
@@ -127,7 +128,7 @@ fn run(cli: Cli) -> Result<Outcome> {
 /// Warnings always, more with `-v`, or as `RUST_LOG` says.
 fn log_to_stderr(verbose: u8) {
     let level = match verbose {
-        // winit warns of displays that have no size in millimetres, and the like.
+        // winit warns of displays without a size in millimetres, for example.
         0 => "warn,winit=error",
         1 => "info",
         _ => "debug",
@@ -145,7 +146,7 @@ mod tests {
 
     use super::*;
 
-    /// The words with which an option's value is refused; nothing if it is taken.
+    /// The message with which an option's value is refused; nothing if it is accepted.
     fn refusal(verb: &str, option: &[&str]) -> Option<String> {
         let words = [&["varikernel", verb], option].concat();
         Cli::try_parse_from(words).err().map(|error| error.to_string())

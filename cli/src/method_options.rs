@@ -12,66 +12,82 @@ use super::numbers::whole_checked_later;
 #[derive(Debug, clap::Args)]
 pub(super) struct MethodOptions {
     /// n: photons that a box has to hold, at least 1.
-    #[arg(short = 'n', long, default_value_t = 25, value_name = "N", value_parser = whole_checked_later(1..=u32::MAX))]
-    #[arg(allow_negative_numbers = true)]
+    #[arg(short = 'n', long, default_value_t = 25, value_name = "N")]
+    #[arg(value_parser = whole_checked_later(1..=u32::MAX), allow_negative_numbers = true)]
+    #[arg(help_heading = "Question")]
     pub(super) min_photons: u32,
 
-    /// MR: the radius at which the search ends, in pixels, 1 to 32767; pixels that find too few photons get it.
-    #[arg(short = 'r', long, default_value_t = 32, value_name = "MR", value_parser = whole_checked_later(1..=u32::MAX))]
-    #[arg(allow_negative_numbers = true)]
+    /// MR: the radius at which the search ends, in pixels, 1 to 32767; pixels that find too few photons get
+    /// it.
+    #[arg(short = 'r', long, default_value_t = 32, value_name = "MR")]
+    #[arg(value_parser = whole_checked_later(1..=u32::MAX), allow_negative_numbers = true)]
+    #[arg(help_heading = "Question")]
     pub(super) max_radius: u32,
 
     /// What counts outside the map (thesis 3.1).
     #[arg(long, value_enum, default_value_t = Edges::Scale)]
+    #[arg(help_heading = "Question")]
     edges: Edges,
 
-    /// How photons in a box are counted (thesis 3.2 to 3.4): auto lets a planner choose by the map, or name one of
-    /// brute-force, naive-mipmap, averaged-mipmap, pyramid, sat.
+    /// How photons in a box are counted (thesis 3.2 to 3.4): auto lets a planner choose by the map, or name
+    /// one of brute-force, naive-mipmap, averaged-mipmap, pyramid, sat.
     #[arg(long, default_value = "auto", value_parser = method, value_name = "METHOD")]
+    #[arg(help_heading = "Method")]
     method: MethodChoice,
 
-    /// Order in which radii are tried (thesis 3.5); the naive mipmap has its own. [default: the planner's; with a named
-    /// method, bracketed for sat in whole numbers without faults, else binary]
+    /// Order in which radii are tried (thesis 3.5); the naive mipmap has its own. [default: the planner's;
+    /// with a named method, bracketed for sat in whole numbers without faults, else binary]
     #[arg(long, value_enum)]
+    #[arg(help_heading = "Method")]
     search: Option<Order>,
 
-    /// How the summed-area table is built: by doubling (thesis 4.2) or by a scan. [default: scan; with a fault or a float:
-    /// doubling]
+    /// How the summed-area table is built: by doubling (thesis 4.2) or by a scan. [default: scan; with a
+    /// fault or a float: doubling]
     #[arg(long, value_enum)]
+    #[arg(help_heading = "Method")]
     sat_build: Option<SatBuild>,
 
     /// Samples a pass when the summed-area table is built by doubling (thesis 4.2).
     /// [default: 4]
     #[arg(long, value_enum)]
+    #[arg(help_heading = "Method")]
     sat_samples: Option<SatSamples>,
 
-    /// Number in which sums are kept; u16 is for the summed-area table, where no box holds 2^16 photons; f16 (up to 2^11 in
-    /// all), f32-minus-mean and f32-minus-whole-mean (never proved, so with --allow-inexact only) are for measurements of it.
+    /// Number in which sums are kept; u16 is for the summed-area table, where no box holds 2^16 photons; f16
+    /// (up to 2^11 in all), f32-minus-mean and f32-minus-whole-mean (never proved, so with --allow-inexact
+    /// only) are for measurements of it.
     #[arg(long, value_enum, default_value_t = Storage::U32)]
+    #[arg(help_heading = "Method")]
     storage: Storage,
 
     /// How the pyramid splits what is left after a sample (thesis 4.3).
     #[arg(long, value_enum, default_value_t = Split::Larger)]
+    #[arg(help_heading = "Thesis's variants")]
     split: Split,
 
     /// How the pyramid finds the level of a sample (thesis 4.3, 6.3.5).
     #[arg(long, value_enum, default_value_t = Matching::Bits)]
+    #[arg(help_heading = "Thesis's variants")]
     matching: Matching,
 
-    /// A variation of the method that the thesis leaves to future work (6.2.5, 6.3.5, 6.4.5); the radii stay the same.
+    /// A variation of the method that the thesis leaves to future work (6.2.5, 6.3.5, 6.4.5); the radii stay
+    /// the same.
     #[arg(long, value_enum)]
+    #[arg(help_heading = "Thesis's variants")]
     variation: Option<Variation>,
 
     /// Run the thesis's listings with their printed faults, or without.
     #[arg(long, value_enum, default_value_t = Fidelity::Corrected)]
+    #[arg(help_heading = "Thesis's variants")]
     fidelity: Fidelity,
 
     /// Run with these printed faults only.
     #[arg(long, value_enum, value_delimiter = ',', conflicts_with = "fidelity")]
+    #[arg(help_heading = "Thesis's variants")]
     fault: Vec<Fault>,
 }
 
-/// One of the printed faults; what they do is in the library's documentation of `structure`.
+/// One of the printed faults; see [`Faults`].
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]
 enum Fault {
     /// Listing 4.2: coordinates clamped to 0..63 whatever the size.

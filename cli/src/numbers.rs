@@ -1,4 +1,4 @@
-//! Numbers in options: what is no number is told in words of the option, not of a parser.
+//! Numbers in options: errors say what the option takes, instead of quoting a parser.
 
 use std::fmt::Display;
 use std::ops::RangeInclusive;
@@ -16,7 +16,8 @@ where
     }
 }
 
-/// A whole number that is meant to be in `range`, and is checked by what it is for: that says why the range ends where it does.
+/// A whole number that should be in `range`, and is checked where it is used: the error there says why the
+/// range ends where it does.
 pub(super) fn whole_checked_later<T>(range: RangeInclusive<T>) -> impl Fn(&str) -> Result<T, String> + Clone
 where
     T: Copy + Display + FromStr,
@@ -28,7 +29,8 @@ fn words<T: Display>(range: &RangeInclusive<T>) -> String {
     format!("give a whole number from {} to {}", range.start(), range.end())
 }
 
-/// A number with or without a fraction; `example` is one that makes sense. Whether it does is checked by what it is for.
+/// A number with or without a fraction; `example` is one that makes sense. Its range is checked where it is
+/// used.
 pub(super) fn fraction<T: FromStr>(example: &'static str) -> impl Fn(&str) -> Result<T, String> + Clone {
     move |text| text.parse().map_err(|_| format!("give a number, such as {example}"))
 }

@@ -23,13 +23,13 @@ pub(crate) fn print(text: &str) -> Result<()> {
     writeln!(stdout, "{text}").and_then(|()| stdout.flush()).context("the answer could not be printed")
 }
 
-/// A table of names and values for people.
+/// A table of names and values as text.
 pub(crate) fn print_facts(facts: &[(&str, String)]) -> Result<()> {
     let rows: Vec<_> = facts.iter().map(|(name, value)| [(*name).to_owned(), value.clone()]).collect();
     print_rows(&rows)
 }
 
-/// Rows of columns for people, broken where they do not fit.
+/// Rows of columns as text, broken where they do not fit.
 pub(crate) fn print_rows<const COLUMNS: usize>(rows: &[[String; COLUMNS]]) -> Result<()> {
     let mut table = Table::new();
     table.load_style(NOTHING).set_content_arrangement(ContentArrangement::Dynamic).set_width(WIDTH);
@@ -37,13 +37,13 @@ pub(crate) fn print_rows<const COLUMNS: usize>(rows: &[[String; COLUMNS]]) -> Re
     print(&table.trim_fmt())
 }
 
-/// Sentences for people, a line each or more.
+/// Sentences as text, a line each or more.
 pub(crate) fn print_sentences(sentences: &[String]) -> Result<()> {
     let rows: Vec<_> = sentences.iter().map(|sentence| [sentence.clone()]).collect();
     print_rows(&rows)
 }
 
-/// How the program was called, for its reports.
+/// The command line, for reports.
 pub(crate) fn command() -> String {
     let call = std::iter::once("varikernel".to_owned()).chain(words_of_the_call().skip(1));
     call.map(|word| quoted(&word)).collect::<Vec<_>>().join(" ")
@@ -73,13 +73,14 @@ pub(crate) fn print_error(error: &anyhow::Error) {
     }
 }
 
-/// Whether the reader of our output went away, which is no error: `varikernel ... | head`.
+/// Whether the reader closed the pipe, which is no error: `varikernel ... | head`.
 pub(crate) fn is_broken_pipe(error: &anyhow::Error) -> bool {
     let mut causes = error.chain().filter_map(|cause| cause.downcast_ref::<io::Error>());
     causes.any(|cause| cause.kind() == io::ErrorKind::BrokenPipe)
 }
 
-/// Refuses outputs, by the names of their options, that can't be written or would replace the input or each other.
+/// Refuses outputs, by the names of their options, that can't be written or would replace the input or each
+/// other.
 pub(crate) fn check_files(input: (&str, &Path), outputs: &[(&str, Option<&Path>)]) -> Result<()> {
     let mut taken = vec![(input.0, place_of(input.1))];
     for &(name, path) in outputs {

@@ -16,9 +16,10 @@ use super::{Outcome, output};
 
 /// Trace photons through a scene and write their diffuse landings.
 ///
-/// Each landing has its position in scene units, the direction from which the photon came, its power before absorption
-/// (linear RGB), the surface's normal and name, the number of landings before (from 0), and whether glass has refracted
-/// the photon on its way. The result depends on the seed alone, not on the number of threads.
+/// Each landing has its position in scene units, the direction from which the photon came, its power before
+/// absorption (linear RGB), the surface's normal and name, the number of landings before (from 0), and
+/// whether glass has refracted the photon on its way. The result depends on the seed alone, not on the number
+/// of threads.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
     /// A scene file, or one of: cornell-glass, cornell-boxes, cornell-empty, mirror-ring, water.
@@ -30,7 +31,8 @@ pub(crate) struct Args {
     output: Option<PathBuf>,
 
     /// Photons that leave the lights; 1e6 is a million.
-    #[arg(long, default_value = "1e6", value_parser = parse_count, value_name = "NUMBER", allow_negative_numbers = true)]
+    #[arg(long, default_value = "1e6", value_name = "NUMBER")]
+    #[arg(value_parser = parse_count, allow_negative_numbers = true)]
     photons: u32,
 
     /// Diffuse landings after which a photon is followed no further.
@@ -42,7 +44,8 @@ pub(crate) struct Args {
     #[arg(long, default_value_t = 1, value_parser = whole(0..=u64::MAX), allow_negative_numbers = true)]
     seed: u64,
 
-    /// End photons by chance, in proportion to what a surface absorbs, instead of dimming them; the mean is the same.
+    /// End photons by chance, in proportion to what a surface absorbs, instead of dimming them; the mean is
+    /// the same.
     #[arg(long)]
     russian_roulette: bool,
 
@@ -90,7 +93,7 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     let emission = Emission::new(&scene, &settings)?;
     let threads = args.threads.unwrap_or(0);
     if args.threads == Some(0) {
-        bail!("--threads 0 is not possible: nobody would trace; give at least 1");
+        bail!("--threads 0 is not possible: give at least 1");
     }
     let pool =
         rayon::ThreadPoolBuilder::new().num_threads(threads).build().context("can't start the threads")?;

@@ -19,15 +19,16 @@ use super::{Outcome, device, output, real_map};
 
 /// Reproduce the thesis: its tables, figures and claims, timed and judged on this machine.
 ///
-/// Writes a folder with report.html (one self-contained page), claims.csv, tables/, figures/ and run.json (every sample).
+/// Writes a folder with report.html (one self-contained page), claims.csv, tables/, figures/ and run.json
+/// (every sample).
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
     /// Folder to write to; made if it is missing.
     #[arg(short, long, default_value = "reproduction", value_name = "FOLDER")]
     output: PathBuf,
 
-    /// Time for all timing runs, such as 90s or 10m; what does not fit says so in the tables [default: 4m, or 24h with
-    /// --full].
+    /// Time for all timing runs, such as 90s or 10m; what does not fit is marked in the tables [default: 4m,
+    /// or 24h with --full].
     #[arg(long, value_parser = duration, allow_negative_numbers = true)]
     budget: Option<Duration>,
 
@@ -64,7 +65,7 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     let cornell = real_map::read()?;
     let real = (&cornell, real_map::NAME);
 
-    // What needs no clock is told at once.
+    // What needs no clock is printed at once.
     let begun = Instant::now();
     let counted = reproduce::counted(&gl, real)?;
     let counted_seconds = begun.elapsed().as_secs_f64();
@@ -178,7 +179,7 @@ fn notes(run: &RunFile) -> Vec<String> {
     let left_out: usize = run.parts.iter().map(|part| part.report.left_out.len()).sum();
     let wrong: usize = runs().filter(|run| run.is_wrong()).count();
     vec![format!(
-        "{samples} samples were taken; in {suspect} of them the GPU query and the clock disagree. {left_out} cases were \
-         left out, and {wrong} of an exact method gave a wrong answer."
+        "{samples} samples were taken; in {suspect} of them the GPU query and the clock disagree. {left_out} \
+         cases were left out, and {wrong} of an exact method gave a wrong answer."
     )]
 }

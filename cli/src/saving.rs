@@ -1,4 +1,4 @@
-//! What long runs save as they go, and how to go on with it where the last save fails.
+//! Saves during long runs, and how to resume where the last save fails.
 
 use std::time::{Duration, Instant};
 
@@ -7,7 +7,7 @@ use varikernel::Error;
 
 use super::output::{quoted, words_of_the_call};
 
-/// Saves now and then. One that fails ends nothing: by the next, the disk may have room.
+/// Saves now and then. One that fails does not end the run: the disk may have room at the next.
 pub(super) struct Autosave {
     every: Duration,
     last: Instant,
@@ -55,7 +55,7 @@ pub(super) enum Resume {
     Instead { of: &'static str, option: &'static str },
 }
 
-/// The words of an error at the end of a long run, with the command that goes on from what was saved.
+/// The error at the end of a long run, with the command that goes on from what was saved.
 pub(super) fn how_to_go_on(error: Error, resume: &Resume) -> anyhow::Error {
     let command = resume.command(words_of_the_call());
     let next = match resume {
@@ -71,7 +71,7 @@ pub(super) fn how_to_go_on(error: Error, resume: &Resume) -> anyhow::Error {
 }
 
 impl Resume {
-    /// The command that does so, as a shell takes it, after one of the words `call`.
+    /// The command that does so, quoted for a shell, after the command line `call`.
     fn command(&self, call: impl Iterator<Item = String>) -> String {
         let mut words: Vec<String> = call.collect();
         match *self {

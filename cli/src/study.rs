@@ -17,12 +17,12 @@ use super::{Outcome, device, output, real_map};
 /// What was found so far is saved as often as this.
 const SAVE_EVERY: Duration = Duration::from_secs(10);
 
-/// Hold run time against error: radius maps, estimates of density, and pictures.
+/// Compare run time with error: radius maps, estimates of density, and pictures.
 ///
-/// Every method, build, storage and search is timed and compared with the exact radii, beside approximations that are no
-/// default anywhere. Estimates of density are compared with densities whose truth is known, and pictures with variable
-/// radii with the best fixed ones. The folder gets study.html to look at, study.csv with a row for each
-/// measurement, and study.json. Errors are the same at each run, times are not.
+/// Every method, build, storage and search is timed and compared with the exact radii, beside approximations
+/// that are no default anywhere. Estimates of density are compared with densities whose truth is known, and
+/// pictures with variable radii with the best fixed ones. The folder gets study.html to look at, study.csv
+/// with a row for each measurement, and study.json. Errors are the same at each run, times are not.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
     /// Folder to write to; made if it is missing.
@@ -32,7 +32,8 @@ pub(crate) struct Args {
     #[command(flatten)]
     extent: Extent,
 
-    /// Go on with the study.partial.json in the folder, or with its study.json; the other options have to be the same again.
+    /// Go on with the study.partial.json in the folder, or with its study.json; the other options have to be
+    /// the same again.
     #[arg(long)]
     resume: bool,
 
@@ -106,7 +107,7 @@ struct Files<'a> {
 }
 
 impl Files<'_> {
-    /// What is there until all is: a whole study of before is not touched by one that is never finished.
+    /// The file until all is done: an unfinished study does not replace a finished one.
     fn partial(&self) -> PathBuf {
         self.folder.join("study.partial.json")
     }
@@ -144,7 +145,7 @@ impl Files<'_> {
     }
 }
 
-/// What to choose, in words; the rest is in the files.
+/// What to choose, as text; the rest is in the files.
 fn print(study: &Study, args: &Args) -> Result<()> {
     let summary = study.summary();
     if let Some((_, overall)) = summary.radii.first() {

@@ -1,4 +1,4 @@
-//! What a host has before it meets the library: a context of its own, and a way to make programs.
+//! What a host has before it uses the library: a context of its own, and a way to make programs.
 
 use std::ffi::{CStr, c_void};
 use std::sync::Arc;

@@ -1,4 +1,4 @@
-//! What three-d draws our way: normals for the g-buffer, and the library's textures on the screen.
+//! Materials of three-d: normals for the g-buffer, and the library's textures on the screen.
 
 use three_d::{
     Blend, ColorTexture, Cull, DepthTest, DepthTexture, Effect, EffectMaterialId, Light, Material,

@@ -1,4 +1,4 @@
-//! What a host brings: photons from a point light in a room, traced past a box and a sphere.
+//! The host's part: photons from a point light in a room, traced past a box and a sphere.
 
 use varikernel::PhotonPoint;
 use varikernel::glam::Vec3;

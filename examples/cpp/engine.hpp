@@ -13,7 +13,7 @@
 
 #include "varikernel.h"
 
-// Ends the program with words if something does not hold.
+// Ends the program with a message if something does not hold.
 inline void require(bool holds, const std::string &what) {
     if (!holds) {
         std::fprintf(stderr, "failed: %s\n", what.c_str());
@@ -49,7 +49,7 @@ struct Texture {
     Texture(const Texture &) = delete;
 };
 
-// A framebuffer around a texture of whomever.
+// A framebuffer around any texture.
 struct Target {
     int width, height;
     GLuint framebuffer = 0;
@@ -73,8 +73,8 @@ struct Target {
     }
 };
 
-// Photons on a floor 2 units below the camera, which looks down on it: a caustic in the middle, dim light around. Together
-// they carry a power of 1, and all of them land in the picture.
+// Photons on a floor 2 units below the camera, which looks down on it: a caustic in the middle, dim light
+// around. Together they carry a power of 1, and all of them land in the picture.
 inline std::vector<varikernel_photon> photons_on_a_floor(int count) {
     std::mt19937 random(1);
     std::normal_distribution<float> caustic(0.0f, 0.2f);
@@ -88,8 +88,8 @@ inline std::vector<varikernel_photon> photons_on_a_floor(int count) {
     return photons;
 }
 
-// The engine's camera: 90 degrees tall, from 1 to 3 units; and what it sees of the floor: places with their depth, normals
-// with the number of the surface. An engine draws these.
+// The engine's camera: 90 degrees tall, from 1 to 3 units; and what it sees of the floor: places with their
+// depth, normals with the number of the surface. An engine draws these.
 struct Floor {
     float view[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
     float projection[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -2, -1, 0, 0, -3, 0};

@@ -1,4 +1,4 @@
-/* A headless OpenGL 3.3 core context on an EGL device: what a host has before it meets varikernel. C99 and C++. */
+/* A headless OpenGL 3.3 core context on an EGL device: what a host has before it uses varikernel. C99 and C++. */
 #ifndef HEADLESS_H
 #define HEADLESS_H
 

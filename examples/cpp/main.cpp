@@ -1,5 +1,6 @@
-// An engine with varikernel in its frame, in ten steps. It splats photons as points, has their radii found, reads them
-// in a shader of its own, and checks each one against plain loops; then it has the photons' light found on its g-buffer.
+// An engine with varikernel in its frame, in ten steps. It splats photons as points, has their radii found,
+// reads them in a shader of its own, and checks each one against plain loops; then it has the photons' light
+// found on its g-buffer.
 // Exit code 0 if all of it is right.
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
-// Boxes around the pixels of a block of SIDE x SIDE.
-// Follows a counter that defines: uint count_in_box(ivec2 lo, ivec2 hi), both corners included and inside the map.
+// Boxes around the pixels of a block of SIDE x SIDE. Follows a counter that defines: uint count_in_box(ivec2
+// lo, ivec2 hi), both corners included and inside the map.
 //
-// The boxes of all the block's pixels, together, hold the photons of one box around the block; what all of them have in
-// common holds those of another. The first radius at which the one holds enough bounds the radii from below, that of the
-// other from above. Without an edge in reach, the other lags behind by SIDE - 1.
+// The boxes of all the block's pixels, together, hold the photons of one box around the block; what all of
+// them have in common holds those of another. The first radius at which the one holds enough bounds the radii
+// from below, that of the other from above. Without an edge in reach, the other lags behind by SIDE - 1.
 
 // Columns and rows of the map, in pixels.
 uniform ivec2 map_size;

@@ -1,5 +1,5 @@
-// The radii that a block's pixels can have, where no edge is in reach: in as many steps for each block, without a loop
-// or a branch.
+// The radii that a block's pixels can have, where no edge is in reach: in as many steps for each block,
+// without a loop or a branch.
 
 // Brackets of the blocks that these lie in, as `bracket`.
 uniform usampler2D wider;

@@ -1,6 +1,6 @@
 // The radii that a tile's pixels can have, and the class of programs that find them.
 
-// MR, or MR + 1 where "not even MR" is to be told from MR; in pixels.
+// MR, or MR + 1 where "not even MR" is to be distinguished from MR; in pixels.
 uniform int last_radius;
 #ifdef MASKED
 // Not 0 where a tile has pixels that need a radius.

@@ -25,8 +25,8 @@ void main()
     ivec2 p = ivec2(gl_FragCoord.xy);
     sum = texel(p);
 #ifdef FAULT_SAMPLE_STRIDE
-    // As printed: the first offset is 2^pass instead of SAMPLES^pass, and the added loop goes once too often and
-    // always along x.
+    // As printed: the first offset is 2^pass instead of SAMPLES^pass, and the added loop goes once too often
+    // and always along x.
     ivec2 first = p - axis * printed_offset;
     sum += texel(first);
     for (int i = 1; i < SAMPLES; ++i) {

@@ -1,5 +1,5 @@
-// Draws the pixels whose count is not what the table says: the sum of a box of one pixel.
-// Where there is none, the table is the sum of the counts, since it is nothing before the first row and column.
+// Draws the pixels whose count is not what the table says: the sum of a box of one pixel. Where there is
+// none, the table is the sum of the counts, since it is nothing before the first row and column.
 
 // The summed-area table.
 uniform SUM_SAMPLER table;

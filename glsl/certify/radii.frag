@@ -1,5 +1,6 @@
-// Draws the pixels whose radius two boxes do not prove: one that holds enough, and a smaller one that does not.
-// Follows a counter that defines: uint count_in_box(ivec2 lo, ivec2 hi), both corners included and inside the map.
+// Draws the pixels whose radius two boxes do not prove: one that holds enough, and a smaller one that does
+// not. Follows a counter that defines: uint count_in_box(ivec2 lo, ivec2 hi), both corners included and
+// inside the map.
 
 // Columns and rows of the map, in pixels.
 uniform ivec2 map_size;
@@ -25,7 +26,7 @@ void main()
 {
     ivec2 center = min(ivec2(gl_FragCoord.xy), map_size - 1);
     uint radius = texelFetch(radii, center, 0).r;
-    // What is not a radius at all is counted as one that is.
+    // A value outside of 1 to MR is never proved; its boxes are those of the nearest radius.
     uint r = clamp(radius, 1u, max_radius);
     bool holds = enough_within(center, int(r));
     // A search starts at 1: below there is nothing to prove.

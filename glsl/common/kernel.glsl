@@ -1,7 +1,9 @@
-// A kernel: a disc on a surface, flat as the surface is, whose weight falls from its middle to its edge (thesis 2.6.2).
+// A kernel: a disc on a surface, flat as the surface is, whose weight falls from its middle to its edge
+// (thesis 2.6.2).
 //
-// A box of (2 R + 1)^2 pixels, as the radius map counts them, covers some area of the surface, and the disc has the same:
-// so it holds about as many photons. It is at least as wide as a pixel wherever it is seen edge-on.
+// A box of (2 R + 1)^2 pixels, as the radius map counts them, covers some area of the surface, and the disc
+// has the same: so it holds about as many photons. It is at least as wide as a pixel wherever it is seen
+// edge-on.
 
 // The kernel's extent along the normal, as a share of its radius.
 const float THICKNESS = 0.2;
@@ -13,7 +15,8 @@ struct Kernel {
     vec3 position;
     vec3 normal;
     float number;
-    // Axes over their half lengths: a place is inside where the squares of its three products with them sum to less than 1.
+    // Axes over their half lengths: a place is inside where the squares of its three products with them sum
+    // to less than 1.
     vec3 across;
     vec3 along;
     vec3 through;
@@ -25,7 +28,8 @@ Kernel kernel_on(vec3 position, Surface surface, uint radius)
     vec3 sight = normalize(surface.position - camera);
     vec3 flat_sight = sight - dot(sight, surface.normal) * surface.normal;
     vec3 other = abs(surface.normal.x) < 0.5 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0);
-    vec3 along = dot(flat_sight, flat_sight) > 1e-8 ? normalize(flat_sight) : normalize(cross(surface.normal, other));
+    vec3 along = dot(flat_sight, flat_sight) > 1e-8 ? normalize(flat_sight)
+                                                    : normalize(cross(surface.normal, other));
     vec3 across = cross(surface.normal, along);
     float pixel = pixel_side * surface.depth;
     float disc = float(2u * radius + 1u) * sqrt(area_on(surface, LEAST_COSINE) / PI);
@@ -46,7 +50,8 @@ ivec4 reach(Kernel kernel, mat4 to_clip, ivec2 middle)
         vec2 farthest = vec2(0.0);
         for (int side = -1; side <= 1; side += 2) {
             vec4 end = to_clip * vec4(kernel.position + float(side) * axes[axis], 1.0);
-            vec2 pixels = (end.xy / max(end.w, 0.05 * centre.w) - centre.xy / centre.w) * 0.5 * vec2(map_size);
+            vec2 pixels =
+            (end.xy / max(end.w, 0.05 * centre.w) - centre.xy / centre.w) * 0.5 * vec2(map_size);
             farthest = max(farthest, abs(pixels));
         }
         extent += farthest * farthest;

@@ -12,7 +12,8 @@ layout(location = 3) in float photon_surface;
 // To clip space, with row 0 of the picture at the bottom.
 uniform mat4 to_clip;
 
-// Where a place is in the picture, in pixels; behind the camera and far beside the picture: somewhere outside.
+// Where a place is in the picture, in pixels; behind the camera and far beside the picture: somewhere
+// outside.
 vec2 pixel_of(vec3 place)
 {
     vec4 clip = to_clip * vec4(place, 1.0);
@@ -20,8 +21,8 @@ vec2 pixel_of(vec3 place)
     return (at * 0.5 + 0.5) * vec2(map_size);
 }
 
-// Whether the photon is visible: in the picture, and on the surface that its pixel shows. It may lie half a pixel before
-// or behind that surface's plane, which is what a curved surface may bend away within a pixel.
+// Whether the photon is visible: in the picture, and on the surface that its pixel shows. It may lie half a
+// pixel before or behind that surface's plane, which is what a curved surface may bend away within a pixel.
 bool contributes(ivec2 pixel, Surface surface)
 {
     return (to_clip * vec4(photon_position, 1.0)).w > 0.0

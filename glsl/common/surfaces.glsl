@@ -2,7 +2,8 @@
 
 // Place in scene units; w: depth along the view, 0 where nothing is seen.
 uniform sampler2D position;
-// Towards the camera; w: the surface's number from 1, negative for mirrors and glass, 0 where nothing is seen.
+// Towards the camera; w: the surface's number from 1, negative for mirrors and glass, 0 where nothing is
+// seen.
 uniform sampler2D normal;
 // Columns and rows of the picture, in pixels.
 uniform ivec2 map_size;
@@ -28,7 +29,8 @@ Surface surface_at(ivec2 pixel)
     return Surface(place.xyz, place.w, facing.xyz, facing.w);
 }
 
-// Area that a pixel covers on its surface, whose cosine to the line of sight counts as at least `least_cosine`.
+// Area that a pixel covers on its surface, whose cosine to the line of sight counts as at least
+// `least_cosine`.
 float area_on(Surface surface, float least_cosine)
 {
     vec3 sight = surface.position - camera;

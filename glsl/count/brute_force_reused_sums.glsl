@@ -1,5 +1,6 @@
 // From one radius to the next a box grows by a ring: only the ring is read, and its sum kept (thesis 6.2.5).
-// A forward search asks for boxes around one centre by growing radius, and for boxes as they come (BOX_UNCLIPPED).
+// A forward search asks for boxes around one centre by growing radius, and for boxes as they come
+// (BOX_UNCLIPPED).
 int counted_radius = 0;
 SUM counted = SUM(0);
 

@@ -36,8 +36,8 @@ int matching_level(ivec2 at, ivec2 extent)
 }
 
 #ifdef WHOLE_STRIPS
-// 6.3.5: the strips of width or height 1 that odd coordinates leave are at the box's sides. Takes them off, each in
-// one loop, so that blocks of 2 x 2 and larger fill what is left, from `lo` to before `end`.
+// 6.3.5: the strips of width or height 1 that odd coordinates leave are at the box's sides. Takes them off,
+// each in one loop, so that blocks of 2 x 2 and larger fill what is left, from `lo` to before `end`.
 SUM strips_sum(inout ivec2 lo, inout ivec2 end)
 {
     SUM sum = SUM(0);
@@ -63,7 +63,8 @@ SUM strips_sum(inout ivec2 lo, inout ivec2 end)
 
 uint count_in_box(ivec2 lo, ivec2 hi)
 {
-    // Areas as (x, y, x_end, y_end), ends not included. STACK_SIZE is proved enough in structure/pyramid.rs.
+    // Areas as (x, y, x_end, y_end), ends not included. STACK_SIZE is proved enough in
+    // src/radius/tables/pyramid.rs.
     ivec4 stack[STACK_SIZE];
     ivec2 end = hi + 1;
     SUM sum = SUM(0);

@@ -1,5 +1,5 @@
-// Listing 4.2 with its faults, each by its own define. Reads outside the texture, which the listing makes and GLSL
-// leaves undefined, give 0 here, the border colour that 4.1 relies on.
+// Listing 4.2 with its faults, each by its own define. Reads outside the texture, which the listing makes and
+// GLSL leaves undefined, give 0 here, the border colour that 4.1 relies on.
 
 // The summed-area table.
 uniform SUM_SAMPLER table;

@@ -1,4 +1,4 @@
-// Sets every pixel that gets here: the depth or stencil test has let it through.
+// Sets every pixel that passes the depth or stencil test.
 
 // 1; others stay as cleared.
 layout(location = 0) out uint passed;

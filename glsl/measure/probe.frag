@@ -1,5 +1,5 @@
-// What one radius costs a summed-area table at least: four fetches and their sum. The corners are those of a box of
-// radius 3, moved to the border where they would lie outside.
+// What one radius costs a summed-area table at least: four fetches and their sum. The corners are those of a
+// box of radius 3, moved to the border where they would lie outside.
 
 // Photons per pixel.
 uniform usampler2D density;

@@ -2,8 +2,8 @@
 
 // The nearest primitive in each direction, from 1; 0 for none.
 uniform usampler2D nearest;
-// Four texels for each: corner and two edges of a triangle, then its normal and the distance of its plane from the origin along that; or
-// centre and radius of a sphere.
+// Four texels for each: corner and two edges of a triangle, then its normal and the distance of its plane
+// from the origin along that; or centre and radius of a sphere.
 uniform sampler2D primitives;
 // Sizes of the numbers that the pixel's place and the light's were found from, in scene units.
 float coarseness = 0.0;
@@ -54,7 +54,8 @@ int triangle_between(vec3 from, vec3 away, vec3 corner, vec3 edge1, vec3 edge2, 
 {
     float before = dot(plane.xyz, from) - plane.w;
     float after = dot(plane.xyz, from + away) - plane.w;
-    if (before * after >= 0.0 || abs(before) <= MARGIN * coarseness || abs(after) <= MARGIN * coarseness_of_light) {
+    if (before * after >= 0.0 || abs(before) <= MARGIN * coarseness
+        || abs(after) <= MARGIN * coarseness_of_light) {
         return APART;
     }
     vec3 across = cross(edge1, edge2);
@@ -66,7 +67,8 @@ int triangle_between(vec3 from, vec3 away, vec3 corner, vec3 edge1, vec3 edge2, 
     if (min(second, third) >= -1e-5 && second + third <= 1.00001) {
         return BETWEEN;
     }
-    // Next to a triangle that is thinner than a texel, planes of its neighbours pass this close to it. It may be lit.
+    // Next to a triangle that is thinner than a texel, planes of its neighbours pass this close to it. It may
+    // be lit.
     float two_texels = 4.0 / float(textureSize(nearest, 0).x);
     return before / (before - after) > two_texels ? BESIDE : APART;
 }

@@ -1,13 +1,14 @@
-// Irradiance from one place of a light, through one side of the cube of maps around it (thesis 2.2); blending adds places up.
-// Follows shadow_map/between.glsl.
+// Irradiance from one place of a light, through one side of the cube of maps around it (thesis 2.2); blending
+// adds places up. Follows shadow_map/between.glsl.
 //
-// A map tells which triangle or sphere is nearest to the light in the direction of a texel. Of the four texels around the
-// pixel's direction, each primitive is met anew by the way from the pixel to the light: no depth is compared, so there is no
-// bias by a slope, and edges of shadows are as sharp as the primitives.
+// A map holds which triangle or sphere is nearest to the light in the direction of a texel. Of the four
+// texels around the pixel's direction, each primitive is met anew by the way from the pixel to the light: no
+// depth is compared, so there is no bias by a slope, and edges of shadows are as sharp as the primitives.
 
 // Place in scene units; w: depth along the view, 0 where nothing is seen.
 uniform sampler2D position;
-// Towards the camera; w: the surface's number from 1, negative for mirrors and glass, 0 where nothing is seen.
+// Towards the camera; w: the surface's number from 1, negative for mirrors and glass, 0 where nothing is
+// seen.
 uniform sampler2D normal;
 // The light's place, in scene units.
 uniform vec3 place;
@@ -59,7 +60,8 @@ bool is_lit(vec3 from)
         known = primitive;
         is_crack = is_crack && found == BESIDE;
     }
-    // Where all four see triangles before the pixel, a small one of a mesh was between them: no texel's middle saw it.
+    // Where all four see triangles before the pixel, a small one of a mesh is between them, which no texel's
+    // middle hits.
     return !is_crack;
 }
 

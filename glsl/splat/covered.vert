@@ -1,5 +1,5 @@
-// How much a photon's kernel covers: the sum of its weights times the pixels' areas. Dividing by it keeps the energy, at
-// the picture's edges and at the surface's as well. One point of the table for each photon.
+// How much a photon's kernel covers: the sum of its weights times the pixels' areas. Dividing by it keeps the
+// energy, at the picture's edges and at the surface's as well. One point of the table for each photon.
 
 // Columns and rows of the table of photons.
 uniform ivec2 table_size;

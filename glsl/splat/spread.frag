@@ -16,7 +16,8 @@ layout(location = 0) out vec4 irradiance_and_fragments;
 void main()
 {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
-    Kernel kernel = Kernel(kernel_position, kernel_normal, kernel_number, kernel_across, kernel_along, kernel_through);
+    Kernel kernel = Kernel(
+        kernel_position, kernel_normal, kernel_number, kernel_across, kernel_along, kernel_through);
     float weight = weight_of_photon(kernel, home, pixel, surface_at(pixel));
     irradiance_and_fragments = vec4(density * weight, 1.0);
 }

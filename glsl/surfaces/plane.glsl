@@ -5,7 +5,8 @@ flat in vec3 facing;
 // From the camera, along the normal, in scene units.
 flat in float plane_distance;
 
-// A plane seen at a smaller cosine is seen edge-on: where the pixel's ray meets it depends on how its edges were rounded.
+// A plane seen at a smaller cosine is seen edge-on: where the pixel's ray meets it depends on how its edges
+// were rounded.
 const float EDGE_ON = 1e-3;
 
 // Distance along a unit vector through the pixel.

@@ -1,5 +1,5 @@
-// The ray of a pixel. Places are found along it and not interpolated between corners, which may be so far away that f32 between them is
-// coarser than what a pixel shows.
+// The ray of a pixel. Places are found along it and not interpolated between corners, which may be so far
+// away that f32 between them is coarser than what a pixel shows.
 
 // The pinhole or the light's place, in scene units.
 uniform vec3 camera;
@@ -18,7 +18,8 @@ vec3 ray_of_pixel()
     return to_corner + gl_FragCoord.x * to_right + gl_FragCoord.y * to_next_row;
 }
 
-// For a depth buffer of f32, whose steps are as fine near as far where distances are kept as they are, over the largest.
+// For a depth buffer of f32, whose steps are as fine near as far where distances are kept as they are, over
+// the largest.
 float depth_of(float distance)
 {
     return clamp(distance / far, 0.0, 1.0);

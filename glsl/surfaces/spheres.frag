@@ -1,5 +1,5 @@
-// Where a line of sight meets a sphere, exactly and not as triangles: place, normal and albedo; for a cube map, which sphere.
-// Follows surfaces/ray.glsl.
+// Where a line of sight meets a sphere, exactly and not as triangles: place, normal and albedo; for a cube
+// map, which sphere. Follows surfaces/ray.glsl.
 
 flat in vec3 centre;
 flat in vec3 reflectance;
@@ -31,7 +31,8 @@ void main()
     }
     float half_chord = sqrt(half_chord_squared);
     float away = length(to_centre);
-    // Positive outside of the sphere. The nearer place comes from the farther one, without a difference of near equals.
+    // Positive outside of the sphere. The nearer place comes from the farther one, without a difference of
+    // near equals.
     float outside = (away - radius) * (away + radius);
     float nearest = closest > 0.0 && outside > 0.0 ? outside / (closest + half_chord) : closest + half_chord;
     if (nearest <= 0.0 || (outside > 0.0 && closest <= 0.0)) {

@@ -1,4 +1,4 @@
-//! How sure a mean of few samples is: Student's t.
+//! The confidence interval of a mean of few samples: Student's t.
 
 use std::fmt;
 
@@ -7,15 +7,16 @@ use statrs::distribution::{ContinuousCDF as _, StudentsT};
 /// The share of intervals that hold the true mean, where samples are independent and normal.
 pub const CONFIDENCE_LEVEL: f64 = 0.95;
 
-/// A mean and how far the true one may be from it, with a confidence of 95 % (W. S. Gosset, "The Probable Error of a Mean",
-/// 1908): t(0.975, count - 1) standard deviations of the sample over the root of their number.
+/// A mean and how far the true one may be from it, with a confidence of 95 % (W. S. Gosset, "The Probable
+/// Error of a Mean", 1908): t(0.975, count - 1) standard deviations of the sample over the root of their
+/// number.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Confidence {
     /// How many samples.
     pub count: usize,
     /// The arithmetic mean.
     pub mean: f64,
-    /// The true mean is less than this away; nothing if there is one sample, which cannot tell.
+    /// The true mean is less than this away; nothing if there is one sample.
     pub half_width: Option<f64>,
 }
 
@@ -38,7 +39,7 @@ impl Confidence {
         Some(Self { count, mean, half_width })
     }
 
-    /// Half the width, 0 where one sample cannot tell.
+    /// Half the width, 0 for one sample.
     #[must_use]
     pub fn margin(&self) -> f64 {
         self.half_width.unwrap_or(0.0)
@@ -53,22 +54,23 @@ impl fmt::Display for Confidence {
     }
 }
 
-/// A ratio of errors or times, as the geometric mean of paired samples, and its interval with a confidence of 95 %.
+/// A ratio of errors or times, as the geometric mean of paired samples, and its interval with a confidence of
+/// 95 %.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct RatioInterval {
     /// How many pairs.
     pub count: usize,
     /// The geometric mean of the ratios.
     pub ratio: f64,
-    /// The true ratio is between these two; nothing if there is one pair, which cannot tell.
+    /// The true ratio is between these two; nothing if there is one pair.
     pub interval: Option<[f64; 2]>,
 }
 
 impl RatioInterval {
     /// The ratio of first over second in each pair, both more than 0; nothing if there are no pairs.
     ///
-    /// Logarithms are averaged, so that the ratio the other way round is the inverse. A pair with a 0 gives a ratio of 0, of
-    /// infinity or NaN.
+    /// Logarithms are averaged, so that the ratio the other way round is the inverse. A pair with a 0 gives a
+    /// ratio of 0, of infinity or NaN.
     #[must_use]
     pub fn of(pairs: &[(f64, f64)]) -> Option<Self> {
         let logarithms: Vec<f64> = pairs.iter().map(|(above, below)| (above / below).ln()).collect();
@@ -125,7 +127,8 @@ mod tests {
 
     #[test]
     fn five_samples_by_hand() {
-        // The squares of -2, -1, 0, 1, 2 add up to 10: a variance of 10 / 4, and a half-width of 2.776 √(2.5 / 5).
+        // The squares of -2, -1, 0, 1, 2 add up to 10: a variance of 10 / 4, and a half-width of 2.776 √(2.5
+        // / 5).
         let Confidence { count, mean, half_width } = Confidence::of(&[3.0, 1.0, 5.0, 2.0, 4.0]).unwrap();
         assert!(count == 5 && (mean - 3.0).abs() < 1e-15);
         assert!((half_width.unwrap() - 2.776_445 * 0.5_f64.sqrt()).abs() < 1e-5, "{half_width:?}");
@@ -136,14 +139,15 @@ mod tests {
 
     #[test]
     fn a_ratio_by_hand() {
-        // Ratios of 1/2 and 1/8: the mean logarithm is ln(1/4), off by ln 2 each, so a half-width of 12.706 ln 2.
+        // Ratios of 1/2 and 1/8: the mean logarithm is ln(1/4), off by ln 2 each, so a half-width of 12.706
+        // ln 2.
         let ratio = RatioInterval::of(&[(1.0, 2.0), (2.0, 16.0)]).unwrap();
         assert!((ratio.ratio - 0.25).abs() < 1e-12);
         let [low, high] = ratio.interval.unwrap();
         let half = 12.706_205 * 2.0_f64.ln();
         assert!((low.ln() - (0.25_f64.ln() - half)).abs() < 1e-4, "{low}");
         assert!((high.ln() - (0.25_f64.ln() + half)).abs() < 1e-4, "{high}");
-        assert!(!ratio.is_below_one() && !ratio.is_above_one(), "two pairs so far apart tell nothing");
+        assert!(!ratio.is_below_one() && !ratio.is_above_one(), "two pairs so far apart do not decide");
         let sure = RatioInterval::of(&[(1.0, 2.0), (1.0, 2.0)]).unwrap();
         assert!(sure.is_below_one() && !sure.is_above_one());
         assert!(RatioInterval::of(&[(2.0, 1.0), (2.1, 1.0)]).unwrap().is_above_one());

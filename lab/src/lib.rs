@@ -1,7 +1,7 @@
-//! What measures `varikernel`: run time, error and promises about numbers, against the thesis and against rivals.
+//! What measures `varikernel`: run time, error and promises about numbers, against the thesis and against
+//! baselines (rivals) on the processor.
 //!
-//! It uses the library as any host does; the few passes that need its inside are its door
-//! [`varikernel::measure`].
+//! It uses the library as any host does; the few passes that need its inside are in [`varikernel::measure`].
 //!
 //! | module | what it answers |
 //! |---|---|
@@ -34,5 +34,5 @@ pub use picture::{LightError, PictureError};
 pub use statistics::Statistics;
 pub use summary::{RadiusSummary, total_photons};
 
-/// The commit that this was built from, where git knew.
+/// The commit that this was built from, where git had one.
 pub const COMMIT: &str = env!("VARIKERNEL_COMMIT");

@@ -2,8 +2,8 @@
 
 /// Median, quartiles, mean and range of some times in milliseconds.
 ///
-/// A quartile is the value at the place p (n - 1) of the sorted samples, counted from 0 and interpolated between
-/// neighbours: Hyndman and Fan's definition 7, the usual one of NumPy and R.
+/// A quartile is the value at the place p (n - 1) of the sorted samples, counted from 0 and interpolated
+/// between neighbours: Hyndman and Fan's definition 7, the usual one of NumPy and R.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Statistics {
     /// How many samples.

@@ -9,7 +9,8 @@ use varikernel_lab::thesis::evidence::{Evidence, Gain, OrderPoint};
 use varikernel_lab::thesis::quantity::{Measured, Measurements, Quantity, Timing};
 use varikernel_lab::thesis::{figures, tables};
 
-/// The printed values of the last card of each table, twice as fast; the two largest sizes of brute force not run.
+/// The printed values of the last card of each table, twice as fast; the two largest sizes of brute force not
+/// run.
 fn planted() -> Measurements {
     let mut cells = Vec::new();
     for table in tables::all() {

@@ -18,7 +18,7 @@ pub enum DeviceChoice {
 }
 
 impl DeviceChoice {
-    /// Whether the candidate or platform that is called `other` is asked for.
+    /// Whether this asks for the candidate or platform `other`.
     pub(super) fn covers(&self, other: &Self) -> bool {
         match self {
             Self::Auto | Self::Named(_) => true,

@@ -51,7 +51,7 @@ pub(super) fn devices() -> Result<Vec<Device>, Refusal> {
     Ok(devices.into_iter().map(device).collect())
 }
 
-/// Why EGL is there and knows of no device: a vendor file that points nowhere, or no driver.
+/// Why EGL is there and lists no device: a vendor file that points nowhere, or no driver.
 fn without_vendor(symptom: &str) -> Refusal {
     match vendor::refusals(&environment::get).into_iter().next() {
         Some(broken) => broken.after(symptom),
@@ -71,9 +71,9 @@ pub(super) fn open(device: &Device) -> Result<Opened, Refusal> {
     })
 }
 
-/// Why nothing works on the device, as far as can be told from outside.
+/// Why nothing works on the device, as far as can be seen from outside.
 fn cause(device: &Device) -> Option<Refusal> {
-    // NVIDIA's own driver reads none of Mesa's variables, and may do without the node.
+    // NVIDIA's own driver reads none of Mesa's variables, and may not need the node.
     let is_mesa = !device.description.contains("NVIDIA");
     let of_node = || device.node.as_deref().and_then(node::refusal);
     let of_environment = || environment::obstacle(&environment::get).filter(|_| is_mesa);

@@ -39,9 +39,11 @@ pub(super) fn get(name: &str) -> Option<String> {
     env::var_os(name).map(|value| value.to_string_lossy().into_owned())
 }
 
-/// What the environment sets of all that drivers of OpenGL, EGL and Vulkan read, as `NAME=value`, in alphabetical order.
+/// What the environment sets of all that drivers of OpenGL, EGL and Vulkan read, as `NAME=value`, in
+/// alphabetical order.
 ///
-/// Some values end a process inside of the driver; a program that wants to live tries a device in another process then.
+/// Some values crash the process inside of the driver; a program that has to survive that tries a device in
+/// another process first.
 #[must_use]
 pub fn driver_variables() -> Vec<String> {
     let mut found: Vec<_> = env::vars_os()
@@ -63,13 +65,14 @@ pub(super) fn obstacle(get: Get<'_>) -> Option<Refusal> {
     version_override(get).or_else(|| driver(get)).or_else(|| no_llvm(get))
 }
 
-/// As [`obstacle`], for OSMesa, which knows no other drivers.
+/// As [`obstacle`], for OSMesa, which has no other drivers.
 #[cfg(feature = "osmesa")]
 pub(super) fn obstacle_of_osmesa(get: Get<'_>) -> Option<Refusal> {
     let name = "GALLIUM_DRIVER";
     let foreign = get(name).filter(|value| !value.is_empty() && !SOFTWARE.contains(&value.as_str()));
     let of_driver = foreign.map(|value| {
-        let reason = format!("the environment sets {name}={value}, and OSMesa knows llvmpipe and softpipe");
+        let reason =
+            format!("the environment sets {name}={value}, and OSMesa has only llvmpipe and softpipe");
         Refusal::new(reason, format!("use EGL (--device egl), or unset {name}"))
     });
     of_driver.or_else(|| version_override(get)).or_else(|| no_llvm(get))
@@ -93,7 +96,8 @@ fn without(symptom: &str, set: &[String]) -> Refusal {
     )
 }
 
-/// A version below 3.3, read as Mesa reads it: numbers first, then perhaps FC or COMPAT. What is no number is ignored.
+/// A version below 3.3, read as Mesa reads it: numbers first, then perhaps FC or COMPAT. What is no number is
+/// ignored.
 fn version_override(get: Get<'_>) -> Option<Refusal> {
     let of_opengl = |value: &str| {
         let (major, rest) = value.split_once('.')?;
@@ -123,7 +127,7 @@ fn leading(text: &str) -> Option<u32> {
     text[..digits.unwrap_or(text.len())].parse().ok()
 }
 
-/// A driver that is asked for by name and is none of Mesa's software renderers.
+/// A driver that is set by name and is none of Mesa's software renderers.
 #[cfg(any(all(feature = "egl", not(target_vendor = "apple")), feature = "window"))]
 fn driver(get: Get<'_>) -> Option<Refusal> {
     let (name, value) = DRIVER.iter().find_map(|name| {
@@ -136,8 +140,8 @@ fn driver(get: Get<'_>) -> Option<Refusal> {
         Refusal::new(
             format!("{reason}, which draws through Vulkan and finds no device of it"),
             format!(
-                "install a driver of Vulkan (on the processor: sudo apt-get install mesa-vulkan-drivers, and set \
-                 LIBGL_ALWAYS_SOFTWARE=true beside it), or unset {name}"
+                "install a driver of Vulkan (on the processor: sudo apt-get install mesa-vulkan-drivers, and \
+                 set LIBGL_ALWAYS_SOFTWARE=true beside it), or unset {name}"
             ),
         )
     } else {
@@ -161,7 +165,7 @@ fn no_llvm(get: Get<'_>) -> Option<Refusal> {
 mod tests {
     use super::*;
 
-    /// What `check` says where `variables` are set.
+    /// What `check` returns where `variables` are set.
     fn with(variables: &[(&str, &str)], check: fn(Get<'_>) -> Option<Refusal>) -> Option<Refusal> {
         check(&|name| variables.iter().find(|(set, _)| *set == name).map(|(_, value)| (*value).to_owned()))
     }
@@ -226,7 +230,7 @@ mod tests {
     #[test]
     fn osmesa_knows_fewer_drivers() {
         let zink = with(&[("GALLIUM_DRIVER", "zink")], obstacle_of_osmesa).unwrap();
-        assert!(zink.reason.contains("OSMesa knows llvmpipe and softpipe"), "{zink:?}");
+        assert!(zink.reason.contains("OSMesa has only llvmpipe and softpipe"), "{zink:?}");
         assert_eq!(
             with(&[("MESA_LOADER_DRIVER_OVERRIDE", "zink")], obstacle_of_osmesa),
             None,

@@ -1,7 +1,7 @@
 //! OpenGL contexts: EGL devices without a display server, OSMesa, and (feature `window`) a window's.
 //!
-//! A context is made current on the thread that opens it and stays so until the last object made from its [`Gl`] is
-//! dropped; one context a thread at a time. It knows nothing of the stages.
+//! A context is made current on the thread that opens it and stays so until the last object made from its
+//! [`Gl`] is dropped; one context a thread at a time. It does not depend on the stages.
 
 #![expect(unsafe_code, reason = "contexts are foreign handles; design rule 8 confines them to this module")]
 
@@ -60,8 +60,8 @@ pub struct Missing {
     pub refusal: Refusal,
 }
 
-/// Every way to a context on this machine, in the order in which `auto` tries them, and why platforms or vendors of them are
-/// missing.
+/// Every way to a context on this machine, in the order in which `auto` tries them, and why platforms or
+/// vendors of them are missing.
 #[must_use]
 pub fn candidates() -> (Vec<Candidate>, Vec<Missing>) {
     let (mut candidates, mut missing) = (Vec::new(), Vec::new());
@@ -95,12 +95,12 @@ pub fn candidates() -> (Vec<Candidate>, Vec<Missing>) {
 
 #[cfg(not(all(feature = "egl", feature = "osmesa", not(target_vendor = "apple"))))]
 fn not_built(platform: DeviceChoice, feature: &str) -> Missing {
-    let remedy = format!("build with the feature {feature}, which Apple's systems can't have of EGL");
+    let remedy = format!("build with the feature {feature}; on Apple's systems there is no EGL");
     Missing { platform, refusal: Refusal::new("not part of this build", remedy) }
 }
 
 impl Candidate {
-    /// Whether the library that it needs is there: EGL lists what is, of OSMesa nobody knows before it is looked for.
+    /// Whether the library that it needs is there: EGL has listed the device, and OSMesa's is looked for now.
     #[must_use]
     pub fn is_installed(&self) -> bool {
         match &self.kind {
@@ -120,8 +120,8 @@ impl Candidate {
         unsafe { self.open_through(|_, address| address) }
     }
 
-    /// As [`open`](Self::open), with each command's address passed through `command` first: to count or log commands,
-    /// or to hide those outside of OpenGL 3.3 core behind null.
+    /// As [`open`](Self::open), with each command's address passed through `command` first: to count or log
+    /// commands, or to hide those outside of OpenGL 3.3 core behind null.
     ///
     /// # Errors
     /// As [`open`](Self::open).
@@ -140,9 +140,9 @@ impl Candidate {
             Kind::OsMesa => osmesa::open(),
         };
         let Opened { context, loader } = opened.map_err(Refusal::into_error)?;
-        // SAFETY: the context was just made current on this thread, the loader is its own but for what the caller
-        // vouches for, and `Gl` keeps it alive; `Gl` cannot leave the thread, and the guard keeps a second context of
-        // ours from taking its place.
+        // SAFETY: the context was just made current on this thread, the loader is its own but for what the
+        // caller guarantees, and `Gl` keeps it alive; `Gl` cannot leave the thread, and the guard keeps a
+        // second context of ours from taking its place.
         unsafe { Gl::from_owned_context(Box::new((context, guard)), |name| command(name, loader(name))) }
     }
 }
@@ -153,7 +153,7 @@ struct Opened {
     loader: Box<dyn Fn(&CStr) -> *const c_void>,
 }
 
-/// Opens the device that is asked for.
+/// Opens the device of that choice.
 ///
 /// # Errors
 /// [`Error::NoContext`] says what was tried, what each try answered, and what helps.
@@ -161,7 +161,8 @@ pub fn open(choice: &DeviceChoice) -> Result<Gl> {
     open_by(choice, &mut Candidate::open)
 }
 
-/// As [`open`], each candidate by `attempt`: a program that has to live through a driver's crash tries it elsewhere first.
+/// As [`open`], each candidate by `attempt`: a program that has to survive a driver's crash tries it in
+/// another process first.
 ///
 /// # Errors
 /// As [`open`].

@@ -50,7 +50,7 @@ fn explain(node: &Path, error: &std::io::Error, owner: Option<&Owner>, groups: &
             format!("find out why {node} can't be opened, or choose another device"),
         );
     };
-    // To be in the group of root would be worth more than a card.
+    // Membership in root's group grants far more than access to a card.
     if mode & 0o060 != 0o060 || *group == 0 {
         let reason = format!("{reason}; its group may not open it (mode {:o}, group {group})", mode & 0o777);
         return Refusal::new(reason, format!("sudo chgrp render {node} && sudo chmod 660 {node}"));
@@ -120,6 +120,6 @@ mod tests {
         assert_eq!(of(ErrorKind::NotFound).reason, "there is no /dev/dri/card0 here");
         assert!(of(ErrorKind::NotFound).remedy.contains("--device /dev/dri"));
         assert!(of(ErrorKind::Other).remedy.contains("find out why"));
-        assert!(of(ErrorKind::PermissionDenied).remedy.contains("find out why"), "nobody knows its group");
+        assert!(of(ErrorKind::PermissionDenied).remedy.contains("find out why"), "its group is not known");
     }
 }

@@ -15,10 +15,10 @@ const ATTRIBUTES: [c_int; 12] = [0x22, 0x1908, 0x30, 24, 0x33, 0x34, 0x36, 3, 0x
 
 const GL_UNSIGNED_BYTE: u32 = 0x1401;
 
-/// How to get the library, and what serves instead.
-const REMEDY: &str = "use EGL (--device egl), which has the same renderer; OSMesa was removed from Mesa in 25.1, up to then:\n  \
-    Debian, Ubuntu: sudo apt-get install libosmesa6\n  \
-    Fedora:         sudo dnf install mesa-libOSMesa";
+/// How to get the library, and what to use instead.
+const REMEDY: &str = "use EGL (--device egl), which has the same renderer; OSMesa was removed from Mesa in \
+                      25.1, up to then:\n  Debian, Ubuntu: sudo apt-get install libosmesa6\n  \
+                      Fedora:         sudo dnf install mesa-libOSMesa";
 
 type CreateContextAttribs = unsafe extern "C" fn(*const c_int, *mut c_void) -> *mut c_void;
 type MakeCurrent = unsafe extern "C" fn(*mut c_void, *mut c_void, u32, c_int, c_int) -> u8;
@@ -28,7 +28,7 @@ type DestroyContext = unsafe extern "C" fn(*mut c_void);
 struct OsMesa {
     context: *mut c_void,
     destroy: DestroyContext,
-    /// OSMesa wants a default framebuffer; nothing draws to it. It outlives the context.
+    /// OSMesa needs a default framebuffer; nothing draws to it. It outlives the context.
     _framebuffer: Box<[u32; 1]>,
     /// The library outlives all of its functions.
     _library: Rc<Library>,
@@ -36,7 +36,8 @@ struct OsMesa {
 
 impl Drop for OsMesa {
     fn drop(&mut self) {
-        // SAFETY: the context came from this library's create and is destroyed once; OSMesa releases it first.
+        // SAFETY: the context came from this library's create and is destroyed once; OSMesa releases it
+        // first.
         unsafe { (self.destroy)(self.context) };
     }
 }

@@ -6,7 +6,7 @@ use crate::error::Error;
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Refusal {
-    /// What went wrong, in the platform's words where it has some.
+    /// What went wrong, in the platform's words where there are some.
     pub reason: String,
     /// What helps: a command, or what to change.
     pub remedy: String,
@@ -29,7 +29,7 @@ impl Refusal {
         Self { reason: format!("{symptom}: {}", self.reason), ..self }
     }
 
-    /// As what the library's calls answer.
+    /// As an error of the library.
     #[must_use]
     pub fn into_error(self) -> Error {
         Error::NoContext { reason: self.reason, remedy: self.remedy }

@@ -1,19 +1,19 @@
-//! What was tried in vain, as one refusal: every answer, and the remedies that fit.
+//! All failed attempts as one refusal: every answer, and the remedies that fit.
 
 use std::collections::BTreeMap;
 
 use super::refusal::Refusal;
 use super::{Candidate, DeviceChoice, Missing};
 
-/// The answers of all devices that were asked for.
+/// The answers of all devices that were tried.
 pub(super) struct Tried<'a> {
     choice: &'a DeviceChoice,
     candidates: &'a [Candidate],
     /// A line each.
     answers: Vec<String>,
-    /// Each with whom it helps.
+    /// Each with the devices that it helps.
     remedies: Vec<(String, Vec<String>)>,
-    /// The devices that work and were not meant, with their renderers.
+    /// The devices that work but were not chosen, with their renderers.
     others: BTreeMap<String, String>,
 }
 
@@ -30,7 +30,7 @@ impl<'a> Tried<'a> {
         tried
     }
 
-    /// A device that works and was not meant.
+    /// A device that works but was not chosen.
     pub(super) fn other(&mut self, candidate: &Candidate, renderer: &str) {
         let name = candidate.choice.to_string();
         self.answers.push(format!("{name}: is \"{renderer}\""));
@@ -45,7 +45,7 @@ impl<'a> Tried<'a> {
     }
 
     fn helps(&mut self, device: &DeviceChoice, remedy: String) {
-        // Nobody needs OSMesa who did not ask for it.
+        // The remedy for OSMesa is left out unless OSMesa was chosen.
         if *device == DeviceChoice::OsMesa && *self.choice != DeviceChoice::OsMesa {
             return;
         }
@@ -58,7 +58,7 @@ impl<'a> Tried<'a> {
     /// All of it in one.
     pub(super) fn refusal(mut self) -> Refusal {
         let has = |choice: &DeviceChoice| self.candidates.iter().any(|one| choice.covers(&one.choice));
-        // Where a whole platform is missing, its own reason says more.
+        // Where a whole platform is missing, its own reason is more specific.
         let is_unknown = !has(self.choice) && (self.answers.is_empty() || has(&DeviceChoice::Egl(None)));
         if is_unknown {
             self.answers.push("nothing: there is no such device".to_owned());
@@ -77,7 +77,7 @@ impl<'a> Tried<'a> {
         Refusal::new(reason, remedies.collect::<Vec<_>>().join("\n  or "))
     }
 
-    /// The devices that could be asked for instead.
+    /// The devices that could be chosen instead.
     fn known(&self) -> String {
         let known = self.candidates.iter().filter(|candidate| candidate.is_installed()).map(|candidate| {
             let name = candidate.choice.to_string();

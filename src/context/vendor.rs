@@ -1,4 +1,5 @@
-//! The files by which EGL finds the libraries of vendors (libglvnd's `egl_vendor.d`): those that point nowhere.
+//! The files by which EGL finds the libraries of vendors (libglvnd's `egl_vendor.d`): those that lead to no
+//! library.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -9,7 +10,7 @@ use serde_json::Value;
 use super::environment::Get;
 use super::refusal::{INSTALL, Refusal};
 
-/// Where the files lie without a word of the environment.
+/// Where the files lie unless the environment says otherwise.
 const FOLDERS: &str = "/etc/glvnd/egl_vendor.d:/usr/share/glvnd/egl_vendor.d";
 /// Files, in place of all others.
 const FILES_VARIABLE: &str = "__EGL_VENDOR_LIBRARY_FILENAMES";
@@ -53,16 +54,14 @@ fn broken(file: &Path, variable: Option<&str>) -> Option<Refusal> {
         let by = variable.map(|variable| format!(", named by {variable},")).unwrap_or_default();
         format!("the vendor file {}{by} {what}", file.display())
     };
-    let remedy = |library: &str| {
-        match variable {
+    let remedy = |library: &str| match variable {
         Some(variable) => without(variable),
         None if library.contains("nvidia") => {
-            "install the graphics libraries of NVIDIA's driver (in a container, NVIDIA_DRIVER_CAPABILITIES must \
-             include \"graphics\"), or remove the file"
+            "install the graphics libraries of NVIDIA's driver (in a container, NVIDIA_DRIVER_CAPABILITIES \
+             must include \"graphics\"), or remove the file"
                 .to_owned()
         }
         None => format!("remove the file, or {INSTALL}"),
-    }
     };
     let text = match fs::read_to_string(file) {
         Ok(text) => text,
@@ -92,7 +91,8 @@ fn broken(file: &Path, variable: Option<&str>) -> Option<Refusal> {
 mod tests {
     use super::*;
 
-    /// What is said of a vendor file in a folder of its own, where the environment names the file or the folder.
+    /// The refusal for a vendor file in a folder of its own, where the environment names the file or the
+    /// folder.
     fn said_of(text: &str, variable: &'static str) -> Vec<Refusal> {
         let folder = tempfile::TempDir::new().unwrap();
         let file = folder.path().join("10_test.json");

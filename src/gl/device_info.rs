@@ -1,15 +1,15 @@
-//! What a context says of itself: names, versions, limits.
+//! What a context reports about itself: names, versions, limits.
 
 use glow::HasContext as _;
 
-/// What a context says of itself.
+/// What a context reports about itself.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
     feature = "serde",
     expect(
         clippy::unsafe_derive_deserialize,
-        reason = "plain data: what is unsafe asks a context, and guards nothing"
+        reason = "plain data: the unsafe code reads from a context, and keeps no invariant"
     )
 )]
 pub struct DeviceInfo {
@@ -32,7 +32,7 @@ pub struct DeviceInfo {
 }
 
 impl DeviceInfo {
-    /// Asks the current context.
+    /// Reads them from the current context.
     pub(super) fn of(glow: &glow::Context) -> Self {
         // SAFETY: the context is current; these are states of every 3.x context.
         unsafe {

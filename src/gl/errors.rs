@@ -1,7 +1,7 @@
-//! What OpenGL answers, as our errors; and whether there is still a context to ask.
+//! OpenGL's errors as the library's, and whether the context is still there.
 //!
-//! A handle whose context is lost stays lost. Everything in this module's siblings that would call OpenGL asks
-//! [`Gl::current`] or [`Gl::live`] first, so that nothing is called from then on, not even to delete.
+//! A handle whose context is lost stays lost. All code in this folder calls OpenGL through [`Gl::current`] or
+//! [`Gl::live`], so that nothing is called from then on, not even to delete.
 
 use glow::HasContext as _;
 
@@ -9,15 +9,15 @@ use super::Gl;
 use crate::error::{Error, Result};
 
 impl Gl {
-    /// Gives the context up, which the host is about to destroy, or has destroyed: from now on nothing that was made from
-    /// this handle or its clones calls OpenGL. Drops delete nothing (the objects went with their context), and every other
-    /// call answers [`Error::ContextLost`].
+    /// Gives the context up, which the host is about to destroy, or has destroyed: from now on nothing that
+    /// was made from this handle or its clones calls OpenGL. Drops delete nothing (the objects went with
+    /// their context), and every other call answers [`Error::ContextLost`].
     ///
-    /// Objects that are dropped while their context is current need no such care. Those dropped later do: OpenGL
-    /// commands without a current context do nothing on Mesa, may crash elsewhere, and while another context is
-    /// current they would delete that one's objects of the same names.
+    /// Objects that are dropped while their context is current do not need this. Those dropped later do:
+    /// OpenGL commands without a current context do nothing on Mesa, may crash elsewhere, and while another
+    /// context is current they would delete that one's objects of the same names.
     ///
-    /// Called for itself when the driver reports GL_CONTEXT_LOST.
+    /// The library calls it when the driver reports GL_CONTEXT_LOST.
     pub fn abandon(&self) {
         self.inner.lost.set(true);
     }
@@ -36,7 +36,8 @@ impl Gl {
         self.live().ok_or(Error::ContextLost)
     }
 
-    /// The context, if it is there: for drops, and for commands whose failure a later [`check`](Self::check) tells.
+    /// The context, if it is there: for drops, and for commands whose failure a later [`check`](Self::check)
+    /// reports.
     pub(super) fn live(&self) -> Option<&glow::Context> {
         (!self.is_lost()).then_some(&*self.inner.glow)
     }
@@ -61,7 +62,7 @@ impl Gl {
         }
     }
 
-    /// glow returned no name: the GL error tells why.
+    /// glow returned no name: the GL error says why.
     pub(crate) fn failure(&self, what: &str) -> Error {
         // SAFETY: the context is current where an object was just asked for.
         let code = self.live().map_or(glow::CONTEXT_LOST, |glow| unsafe { glow.get_error() });
@@ -77,7 +78,7 @@ impl Gl {
                 Error::ContextLost
             }
             glow::OUT_OF_MEMORY => {
-                // What was asked for is counted already, and about to be dropped.
+                // What was requested is already counted, and about to be dropped.
                 let held = self.texture_bytes() + self.buffer_bytes() - bytes.unwrap_or(0);
                 Error::OutOfMemory { what: what.to_owned(), bytes, held }
             }
@@ -85,9 +86,10 @@ impl Gl {
         }
     }
 
-    /// Takes errors that somebody else left behind, so that they are not blamed on the call that follows.
+    /// Clears errors of earlier calls, the host's for instance, so that they are not attributed to the call
+    /// that follows.
     pub(crate) fn forget_errors(&self) {
-        // A lost context answers with an error for ever; so may one that is broken otherwise.
+        // A lost context returns an error at each call; so may one that is broken otherwise.
         for _ in 0..16 {
             let Some(glow) = self.live() else { return };
             // SAFETY: the context is current while the handle lives and is not lost.

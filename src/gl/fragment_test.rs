@@ -1,4 +1,4 @@
-//! Which fragments a host's depth or stencil buffer lets through, written as a mask.
+//! A mask of the fragments that pass a host's depth or stencil test.
 
 use glow::HasContext as _;
 
@@ -65,7 +65,8 @@ pub(crate) fn fill_where(
                 glow.disable(glow::STENCIL_TEST);
                 glow.enable(glow::DEPTH_TEST);
                 glow.depth_mask(false);
-                // The triangle lies at depth 0.5 whatever the vertex stage does; this puts it on the far plane.
+                // The triangle lies at depth 0.5 whatever the vertex stage does; this puts it on the far
+                // plane.
                 let (far, function) = if reversed { (0.0, glow::LESS) } else { (1.0, glow::GREATER) };
                 glow.depth_range_f32(far, far);
                 glow.depth_func(function);
@@ -85,7 +86,7 @@ fn attach(gl: &Gl, target: &Target, texture: glow::Texture, test: FragmentTest) 
     let glow = gl.glow();
     let mut status = glow::FRAMEBUFFER_UNSUPPORTED;
     for &attachment in test.attachments() {
-        // SAFETY: the context is current; a name that is no texture is an error that is asked for.
+        // SAFETY: the context is current; a name that is no texture is an error, which is checked for.
         unsafe {
             target.bind_for_drawing();
             glow.framebuffer_texture_2d(
@@ -127,7 +128,7 @@ fn attach(gl: &Gl, target: &Target, texture: glow::Texture, test: FragmentTest) 
     })
 }
 
-/// Lets go of the host's texture.
+/// Detaches the host's texture.
 unsafe fn detach(gl: &Gl, test: FragmentTest) {
     for &attachment in test.attachments() {
         // SAFETY: the caller has bound our framebuffer.

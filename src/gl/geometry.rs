@@ -10,7 +10,8 @@ use super::pass::{Pass, Target};
 use super::{Texture, TextureFormat};
 use crate::error::{Error, Result};
 
-/// Vertices of f32 attributes, on the GPU: one vertex each for points and triangles, one quad each for instances.
+/// Vertices of f32 attributes, on the GPU: one vertex each for points and triangles, one quad each for
+/// instances.
 #[derive(Debug)]
 pub(crate) struct Vertices {
     gl: Gl,
@@ -30,13 +31,14 @@ enum Buffer {
 }
 
 impl Vertices {
-    /// Uploads `vertices`, whose f32 fields are attributes 0, 1, ... of as many components as `components` says.
+    /// Uploads `vertices`, whose f32 fields are attributes 0, 1, ... of as many components as `components`
+    /// says.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].
     ///
     /// # Panics
-    /// If the components do not make up a vertex: our own mistake.
+    /// If the components do not make up a vertex, which is a bug of the library.
     pub(crate) fn upload<V: Pod>(gl: &Gl, vertices: &[V], components: &[u8]) -> Result<Self> {
         assert_eq!(size_of::<V>(), vertex_bytes(components), "attributes make up a vertex");
         // SAFETY: the context is current while the handle lives.
@@ -94,7 +96,8 @@ impl Vertices {
         Self { gl: gl.clone(), buffer, arrays: [None; 2], count: 0, bytes: 0 }
     }
 
-    /// Puts other vertices in their place, of the same kind; the driver need not wait until the old ones are drawn.
+    /// Replaces the vertices by others of the same kind; the driver need not wait until the old ones are
+    /// drawn.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`]; there are no vertices then.
@@ -121,8 +124,8 @@ impl Vertices {
     fn describe(&mut self, buffer: glow::Buffer, first: i32, components: &[u8]) -> Result<()> {
         let stride = i32::try_from(vertex_bytes(components)).expect("few bytes");
         let glow = self.gl.current()?;
-        // SAFETY: the context is current while the handle lives; each attribute lies inside of a vertex, and the vertices in
-        // the buffer.
+        // SAFETY: the context is current while the handle lives; each attribute lies inside of a vertex, and
+        // the vertices in the buffer.
         unsafe {
             glow.bind_buffer(glow::ARRAY_BUFFER, Some(buffer));
             for (divisor, array) in (0..).zip(&mut self.arrays) {
@@ -244,7 +247,8 @@ impl Pass<'_> {
         })
     }
 
-    /// Draws one point of one pixel for each vertex; the values of points at one place are added to what is there.
+    /// Draws one point of one pixel for each vertex; the values of points at one place are added to what is
+    /// there.
     ///
     /// The vertex shader sets `gl_PointSize`.
     ///
@@ -276,7 +280,8 @@ impl Pass<'_> {
         })
     }
 
-    /// Draws one quad for each vertex, which is an instance of a strip of four; values are added to what is there.
+    /// Draws one quad for each vertex, which is an instance of a strip of four; values are added to what is
+    /// there.
     ///
     /// # Errors
     /// [`Error::UnknownUniform`] if the program lacks a name.

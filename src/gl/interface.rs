@@ -1,4 +1,5 @@
-//! What a shader asks of a host: its samplers, uniforms, vertex attributes and targets, read from its declarations.
+//! What a shader needs from a host: its samplers, uniforms, vertex attributes and targets, read from its
+//! declarations.
 
 use std::fmt;
 
@@ -28,7 +29,7 @@ impl ShaderStage {
     }
 }
 
-/// A declaration by which a shader meets its host.
+/// A variable by which a shader and its host exchange data.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Variable {
@@ -66,10 +67,10 @@ pub struct Interface {
 }
 
 impl Interface {
-    /// Takes in the declarations of a stage's resolved text; `formats` are those of the targets.
+    /// Adds the declarations of a stage's resolved text; `formats` are those of the targets.
     ///
     /// # Panics
-    /// If a declaration can't be read: our own mistake.
+    /// If a declaration can't be read, which is a bug of the library.
     pub(super) fn read(&mut self, text: &str, stage: ShaderStage, formats: &[TextureFormat]) {
         let mut comment = Vec::new();
         let mut is_comment_open = false;
@@ -82,9 +83,9 @@ impl Interface {
                 comment.push(sentence.trim());
             } else if line.starts_with("uniform ") || line.starts_with("layout(") {
                 is_comment_open = false;
-                let (mut variable, place) =
-                    declaration(line, stage).unwrap_or_else(|| panic!("a declaration like no other: {line}"));
-                // One comment may stand for several declarations below it.
+                let (mut variable, place) = declaration(line, stage)
+                    .unwrap_or_else(|| panic!("a declaration that is not understood: {line}"));
+                // One comment may explain several declarations below it.
                 variable.meaning = comment.join(" ");
                 if place == Place::Target {
                     let location = variable.location.unwrap_or(0) as usize;
@@ -237,7 +238,7 @@ void main()
         assert_eq!((interface.targets[0].location, interface.targets[0].format), (Some(1), Some("GL_R32UI")));
         assert!(interface.attributes.is_empty());
 
-        // A second stage adds itself, not a second line.
+        // A second stage is added to the line, not a second line.
         interface.read("// Others.\nuniform mat4 to_clip;\n", ShaderStage::Vertex, &[]);
         assert_eq!(interface.uniforms[1].stages, [ShaderStage::Fragment, ShaderStage::Vertex]);
         assert_eq!(facts(&interface.of_stage(ShaderStage::Vertex).uniforms), ["mat4 to_clip: "]);
@@ -248,7 +249,7 @@ void main()
     }
 
     #[test]
-    #[should_panic(expected = "a declaration like no other")]
+    #[should_panic(expected = "a declaration that is not understood")]
     fn a_declaration_that_can_t_be_read_is_no_silence() {
         Interface::default().read("uniform float weights[4] = float[4](1);\n", ShaderStage::Fragment, &[]);
     }

@@ -21,7 +21,7 @@ impl Gl {
     /// Names an object, which was bound at least once since it exists from then on.
     pub(super) fn label(&self, kind: u32, name: u32, label: &str) {
         if let Some(glow) = self.live().filter(|_| self.inner.names_things) {
-            // SAFETY: the context is current and has KHR_debug; a label is no command to anything.
+            // SAFETY: the context is current and has KHR_debug; a label has no effect on rendering.
             unsafe { glow.object_label(kind, name, Some(format!("varikernel: {label}"))) };
         }
     }
@@ -53,8 +53,8 @@ impl Texture {
 }
 
 impl Target {
-    /// Names the textures that are ours, as many as there are, and the framebuffers and the depth buffer by the first of
-    /// them.
+    /// Names the textures that are ours, as many as there are, and the framebuffers and the depth buffer by
+    /// the first of them.
     pub(crate) fn labelled(self, labels: &[&str]) -> Self {
         let gl = self.texture().gl();
         for (texture, label) in self.textures().iter().zip(labels).filter(|(texture, _)| texture.is_ours()) {

@@ -1,7 +1,7 @@
-//! The only code that talks to OpenGL: programs, textures, passes, timers, saved state.
+//! The only code that calls OpenGL: programs, textures, passes, timers, saved state.
 //!
-//! Nothing here knows about photons. Every object deletes its GL name when dropped, and every object
-//! holds a [`Gl`], so a context that the library opened itself outlives all that was made in it.
+//! Nothing here depends on photons. Every object deletes its GL name when dropped, and every object holds a
+//! [`Gl`], so a context that the library opened itself outlives all that was made in it.
 
 #![expect(unsafe_code, reason = "OpenGL is a C interface; design rule 8 confines it to this module")]
 
@@ -73,11 +73,11 @@ struct Inner {
     nearest_mipmap: glow::Sampler,
     /// What all textures of ours hold together.
     texture_bytes: Cell<u64>,
-    /// Calls of ours that are under way, one inside of the other.
+    /// Calls of the library that are in progress, nested.
     state_guards: Cell<u32>,
     /// What all buffers of ours hold together.
     buffer_bytes: Cell<u64>,
-    /// Whether nothing may be called any more.
+    /// Whether the context is lost, so that nothing may be called any more.
     lost: Cell<bool>,
     /// What times the passes, while a frame of it is recorded.
     stage_times: RefCell<Weak<RefCell<stage_times::Recorder>>>,
@@ -100,7 +100,7 @@ impl Gl {
     /// null, and that context is current on this thread whenever the handle, its clones, or anything made
     /// from them is used or dropped, until [`Gl::abandon`] was called.
     pub unsafe fn from_loader(loader: impl FnMut(&CStr) -> *const c_void) -> Result<Self> {
-        // SAFETY: as the caller vouches.
+        // SAFETY: guaranteed by the caller.
         unsafe { Self::load(loader, None) }
     }
 
@@ -113,20 +113,20 @@ impl Gl {
             .iter()
             .all(|command| !loader(command).is_null());
         let get_booleani_v = loader(c"glGetBooleani_v");
-        // SAFETY: the caller vouches for the loader; a current context was just seen.
+        // SAFETY: the caller guarantees for the loader; a current context was just seen.
         let glow = unsafe { glow::Context::from_loader_function_cstr(loader) };
         let get_booleani_v = (!get_booleani_v.is_null()).then(|| {
-            // SAFETY: the caller vouches that this is the address of glGetBooleani_v, which has this type.
+            // SAFETY: the caller guarantees that this is the address of glGetBooleani_v, which has this type.
             unsafe { std::mem::transmute::<*const c_void, GetBooleaniV>(get_booleani_v) }
         });
-        // SAFETY: as the caller vouches.
+        // SAFETY: guaranteed by the caller.
         unsafe { Self::new(Arc::new(glow), get_booleani_v, names_things, context) }
     }
 
     /// Uses a context that the host has already wrapped in glow 0.17.
     ///
-    /// glow cannot read the colour mask of one draw buffer (`glColorMaski`), so through this door the mask of
-    /// draw buffer 0 is put back on all; [`Gl::from_loader`] puts back each.
+    /// glow cannot read the colour mask of one draw buffer (`glColorMaski`), so with this constructor the
+    /// mask of draw buffer 0 is put back on all; [`Gl::from_loader`] puts back each.
     ///
     /// # Errors
     /// [`Error::Version`] when the context is older than 3.3.
@@ -135,7 +135,7 @@ impl Gl {
     /// The context behind `glow` is current on this thread whenever the handle, its clones, or anything made
     /// from them is used or dropped, until [`Gl::abandon`] was called.
     pub unsafe fn from_glow(glow: Arc<glow::Context>) -> Result<Self> {
-        // SAFETY: as the caller vouches.
+        // SAFETY: guaranteed by the caller.
         unsafe { Self::new(glow, None, true, None) }
     }
 
@@ -148,7 +148,7 @@ impl Gl {
         context: Box<dyn Any>,
         loader: impl FnMut(&CStr) -> *const c_void,
     ) -> Result<Self> {
-        // SAFETY: as the caller vouches.
+        // SAFETY: guaranteed by the caller.
         unsafe { Self::load(loader, Some(context)) }
     }
 
@@ -164,7 +164,7 @@ impl Gl {
             return Err(Error::Version { version: info.version, renderer: info.renderer });
         }
         let names_things = names_things && glow.supports_debug();
-        // SAFETY: the context is current, as the caller vouches; creating objects changes no binding.
+        // SAFETY: the context is current, as the caller guarantees; creating objects changes no binding.
         let (vertex_array, nearest, nearest_mipmap) = unsafe {
             (
                 glow.create_vertex_array().map_err(|what| gl_error(&glow, &what))?,
@@ -193,8 +193,8 @@ impl Gl {
         Ok(gl)
     }
 
-    /// Another handle to the same context, whose calls, and those of all that is made from it, treat the host's state
-    /// by `policy`. A host may use both side by side.
+    /// Another handle to the same context, whose calls, and those of all that is made from it, treat the
+    /// host's state by `policy`. A host may use both side by side.
     #[must_use]
     pub fn with_state_policy(&self, policy: StatePolicy) -> Self {
         Self { state_policy: policy, ..self.clone() }
@@ -206,27 +206,28 @@ impl Gl {
         self.state_policy
     }
 
-    /// What the context says of itself.
+    /// What the context reports about itself.
     #[must_use]
     pub fn info(&self) -> &DeviceInfo {
         &self.inner.info
     }
 
-    /// The glow context, for a host's own calls beside the library's; not to be called once it is [lost](Self::is_lost).
+    /// The glow context, for a host's own calls beside the library's; not to be called once it is
+    /// [lost](Self::is_lost).
     #[must_use]
     pub fn glow(&self) -> &glow::Context {
         &self.inner.glow
     }
 
-    /// Bytes of all textures that the library has made in this context and not dropped: every level and layer, as large as
-    /// its format says; a driver may add to it.
+    /// Bytes of all textures that the library has made in this context and not dropped: every level and
+    /// layer, as large as its format says; a driver may add to it.
     #[must_use]
     pub fn texture_bytes(&self) -> u64 {
         self.inner.texture_bytes.get()
     }
 
-    /// Bytes of all buffers that the library has made in this context and not dropped: vertices, and texels on their way
-    /// back.
+    /// Bytes of all buffers that the library has made in this context and not dropped: vertices, and texels
+    /// on their way back.
     #[must_use]
     pub fn buffer_bytes(&self) -> u64 {
         self.inner.buffer_bytes.get()
@@ -302,14 +303,14 @@ impl Drop for Inner {
     }
 }
 
-/// glow panics where no context is current; a host deserves an error.
+/// glow panics where no context is current; this returns an error instead.
 fn check_current(loader: &mut impl FnMut(&CStr) -> *const c_void) -> Result<()> {
     type GetString = unsafe extern "system" fn(name: u32) -> *const u8;
     let get_string = loader(c"glGetString");
     if get_string.is_null() {
         return Err(Error::no_current_context("the loader does not know glGetString"));
     }
-    // SAFETY: the caller of `from_loader` vouches that this is the address of glGetString.
+    // SAFETY: the caller of `from_loader` guarantees that this is the address of glGetString.
     let get_string = unsafe { std::mem::transmute::<*const c_void, GetString>(get_string) };
     // SAFETY: glGetString takes any value; without a context it returns null.
     if unsafe { get_string(glow::VERSION) }.is_null() {
@@ -319,7 +320,7 @@ fn check_current(loader: &mut impl FnMut(&CStr) -> *const c_void) -> Result<()> 
 }
 
 unsafe fn sampler(glow: &glow::Context, minification: u32) -> Result<glow::Sampler> {
-    // SAFETY: the context is current, as the caller vouches.
+    // SAFETY: the context is current, as the caller guarantees.
     unsafe {
         let sampler = glow.create_sampler().map_err(|what| gl_error(glow, &what))?;
         for (parameter, value) in [

@@ -13,7 +13,7 @@ use crate::error::{Error, Result};
 pub(crate) struct Target {
     gl: Gl,
     textures: Vec<Texture>,
-    /// What hides what, for draws of geometry.
+    /// The depth buffer, for draws of geometry.
     pub(super) depth: Option<Texture>,
     pub(super) framebuffers: Vec<glow::Framebuffer>,
 }
@@ -107,7 +107,8 @@ impl Target {
     pub(crate) fn clear(&mut self, values: &[u32]) {
         assert_eq!(values.len(), self.textures.len(), "a value for each texture");
         let Some(glow) = self.gl.live() else { return };
-        // SAFETY: the context is current while the handle lives, and the draw buffers are unsigned integer ones.
+        // SAFETY: the context is current while the handle lives, and the draw buffers are unsigned integer
+        // ones.
         unsafe {
             glow.bind_framebuffer(glow::DRAW_FRAMEBUFFER, Some(self.framebuffers[0]));
             for (buffer, &value) in (0..).zip(values) {
@@ -182,7 +183,7 @@ impl Targets {
     /// The next one.
     ///
     /// # Panics
-    /// If there is none: what was made and what is taken differ, our own mistake.
+    /// If there is none, a bug of the library: what was made and what is taken differ.
     pub(crate) fn take(&mut self) -> Target {
         self.0.next().expect("a target for each shape")
     }

@@ -1,7 +1,8 @@
-//! The preprocessor as far as `glsl/` asks for it: conditions on defines, and defines that stand for a word.
+//! The preprocessor as far as `glsl/` needs it: conditions on defines, and defines that stand for a word.
 //!
-//! A driver does all of this by itself. Resolved text is for people, and for engines that bring their own code: one variant
-//! alone, without a single `#`. What is not known here is an error, so that nothing is left out in silence.
+//! Drivers do not need this. Resolved text is for readers, and for engines with code of their own: one
+//! variant alone, without a single `#`. A directive that is not supported is an error, so that nothing is
+//! left out silently.
 
 use std::collections::BTreeMap;
 
@@ -18,7 +19,8 @@ struct Condition {
     kept: bool,
 }
 
-/// The lines of `text` that `macros` keep, with what they stand for; `macros` takes in the text's own defines.
+/// The lines of `text` that `macros` keep, with what they stand for; `macros` takes in the text's own
+/// defines.
 ///
 /// # Errors
 /// The line's number and what is wrong with it.
@@ -53,7 +55,7 @@ fn obey(directive: &str, conditions: &mut Vec<Condition>, macros: &mut Macros) -
         }
         "define" => (),
         "ifdef" | "ifndef" | "if" => {
-            // In a branch that is left out, nothing need be known.
+            // In a branch that is left out, nothing need be defined.
             let holds = around && holds(word, rest, macros)?;
             conditions.push(Condition { around, decided: holds, kept: holds });
         }

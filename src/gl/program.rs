@@ -101,7 +101,7 @@ impl Program {
                 let compiled = glow.get_shader_compile_status(shader);
                 let log = glow.get_shader_info_log(shader);
                 glow.attach_shader(name, shader);
-                // The name stays until the program lets go of it.
+                // The shader is deleted once the program is.
                 glow.delete_shader(shader);
                 if !compiled {
                     return Err(failure(log));
@@ -133,7 +133,7 @@ impl Program {
     /// [`Error::UnknownUniform`] if the program has none of that name.
     ///
     /// # Panics
-    /// If the uniform has another type: our own mistake.
+    /// If the uniform has another type, which is a bug of the library.
     pub(super) fn set(&self, name: &str, value: Uniform) -> Result<()> {
         let slot = self.slot(name)?;
         let location = Some(&slot.location);
@@ -163,7 +163,7 @@ impl Program {
     /// [`Error::UnknownUniform`] if the program has none of that name.
     ///
     /// # Panics
-    /// If the sampler is of another type than `kind`: our own mistake.
+    /// If the sampler is of another type than `kind`, which is a bug of the library.
     pub(super) fn set_sampler(&self, name: &str, kind: u32, unit: u32) -> Result<()> {
         let slot = self.slot(name)?;
         assert_eq!(slot.kind, kind, "{}: sampler \"{name}\" does not fit its texture's format", self.label);
@@ -183,7 +183,7 @@ impl Program {
     /// Whether a draw to textures of `formats` is what the source says.
     ///
     /// # Panics
-    /// If it is not: our own mistake.
+    /// If it is not, which is a bug of the library.
     pub(super) fn check_targets(&self, formats: &[TextureFormat]) {
         let declared = &self.target_formats;
         assert!(

@@ -72,7 +72,7 @@ impl Query {
         };
         match code {
             glow::NO_ERROR => Ok(()),
-            // The name is of this kind and not running, so that only another one can be in the way.
+            // The name is of this kind and not running, so that only another running query can be the cause.
             glow::INVALID_OPERATION => Err(Error::QueryRunning { kind: self.kind() }),
             _ => Err(self.gl.error(code, &format!("beginning a {} query", self.kind()), None)),
         }
@@ -90,7 +90,8 @@ impl Query {
         unsafe { glow.end_query(self.target) };
     }
 
-    /// Takes the time at which the GPU has done all commands before this one. No query of another kind is disturbed.
+    /// Takes the time at which the GPU has done all commands before this one. No query of another kind is
+    /// disturbed.
     pub(super) fn stamp(&self) {
         let Some(glow) = self.gl.live() else { return };
         // SAFETY: the context is current while the handle lives, and the query is one of timestamps.
@@ -102,7 +103,7 @@ impl Query {
         self.get(glow::QUERY_RESULT_AVAILABLE) != 0
     }
 
-    /// Waits for the result; 0 if the context is lost, which [`Gl::check`] tells.
+    /// Waits for the result; 0 if the context is lost, which [`Gl::check`] reports.
     pub(super) fn result(&self) -> u64 {
         self.get(glow::QUERY_RESULT)
     }
@@ -111,8 +112,8 @@ impl Query {
         let Some(glow) = self.gl.live() else { return 0 };
         let mut result = 0_u64;
         let address = (&raw mut result).expose_provenance();
-        // SAFETY: no query buffer is bound, so the "offset" is the address of the result. (glow's plain reader of u64
-        // wants a 4.5 command.)
+        // SAFETY: no query buffer is bound, so the "offset" is the address of the result. (glow's plain
+        // reader of u64 needs a 4.5 command.)
         unsafe {
             // A host's context may be newer than 3.3 and hold one.
             let query_buffer = self.gl.has_query_buffers().then(|| {

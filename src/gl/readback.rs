@@ -40,18 +40,18 @@ impl Readback {
         Ok(owned)
     }
 
-    /// Whether a copy is on its way.
+    /// Whether a copy is pending.
     pub(crate) fn is_pending(&self) -> bool {
         self.pending.is_some()
     }
 
-    /// Asks for the first texture of `target`; what was pending is dropped.
+    /// Starts a copy of the first texture of `target`; a pending one is dropped.
     ///
     /// # Errors
     /// [`Error::Gl`](crate::Error::Gl) if the driver makes no fence.
     ///
     /// # Panics
-    /// If there is no room for the texels: our own mistake.
+    /// If there is no room for the texels, which is a bug of the library.
     pub(crate) fn begin(&mut self, target: &Target) -> Result<()> {
         self.forget();
         let (size, format) = (target.size(), target.texture().format());
@@ -59,8 +59,8 @@ impl Readback {
         let bytes = size.x as usize * size.y as usize * format.texel_bytes();
         assert!(bytes as u64 <= self.bytes, "room for the texels");
         let glow = self.gl.current()?;
-        // SAFETY: the context is current while the handle lives; the buffer has room for the texels, tightly packed as
-        // StateGuard sets it.
+        // SAFETY: the context is current while the handle lives; the buffer has room for the texels, tightly
+        // packed as StateGuard sets it.
         unsafe {
             glow.bind_buffer(glow::PIXEL_PACK_BUFFER, Some(self.buffer));
             target.bind_for_reading();

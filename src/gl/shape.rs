@@ -1,4 +1,4 @@
-//! What a texture is before it exists: the one description that both its allocation and sums of memory go by.
+//! What a texture is before it exists: the one description for both its allocation and sums of memory.
 
 use glam::UVec2;
 
@@ -7,7 +7,7 @@ use super::TextureFormat;
 /// Format, size, levels and layers of a texture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct TextureShape {
-    /// As debuggers show it; empty where whoever makes the texture names it.
+    /// Its label in debuggers; empty where the caller labels the texture.
     pub(super) label: &'static str,
     pub(super) format: TextureFormat,
     /// Of level 0.

@@ -23,7 +23,7 @@ pub(crate) const VERSION_LINE: &str = "#version 330 core\n";
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ShaderSource {
     label: String,
-    /// What tells it from others of its label.
+    /// What distinguishes it from others of its label.
     variant: Vec<String>,
     defines: Vec<(&'static str, u32)>,
     /// The fragment stage.
@@ -92,7 +92,8 @@ impl ShaderSource {
         self
     }
 
-    /// A file of the vertex stage, which takes the place of the one triangle; the defines hold for it as well.
+    /// A file of the vertex stage, which takes the place of the one triangle; the defines hold for it as
+    /// well.
     #[must_use]
     pub(crate) fn vertex_file(mut self, file: (&'static str, &'static str)) -> Self {
         self.vertex_files.push(file);
@@ -134,13 +135,14 @@ impl ShaderSource {
         comment[..end].to_owned()
     }
 
-    /// The text of a stage for a reader, or for an engine that brings its own code: version line, what it reads and writes as
-    /// a comment, and the files with all conditions decided and all defines put in.
+    /// The text of a stage for a reader, or for an engine with code of its own: version line, what it reads
+    /// and writes as a comment, and the files with all conditions decided and all defines put in.
     ///
-    /// It declares what [`fragment`](Self::fragment) or [`vertex`](Self::vertex) declares, and computes the same.
+    /// It declares what [`fragment`](Self::fragment) or [`vertex`](Self::vertex) declares, and computes the
+    /// same.
     ///
     /// # Panics
-    /// If a file holds what the small preprocessor does not know: our own mistake.
+    /// If a file holds what the small preprocessor does not support, which is a bug of the library.
     #[must_use]
     pub fn resolved(&self, stage: ShaderStage) -> String {
         let mut text = String::from(VERSION_LINE);

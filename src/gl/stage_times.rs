@@ -1,8 +1,9 @@
 //! How long each pass takes on the GPU, frame by frame, for a host's profiler.
 //!
-//! Two GL_TIMESTAMP queries a pass, so that a GL_TIME_ELAPSED query of the host may be running; some frames are kept in
-//! flight, and their results taken when they have come, so that nothing waits. On llvmpipe a time stamp is
-//! that of the last tile alone; there it waits before and after each pass, and takes the clock instead.
+//! Two GL_TIMESTAMP queries a pass, so that a GL_TIME_ELAPSED query of the host may be running; some frames
+//! are kept in flight, and their results taken when they have come, so that nothing waits. On llvmpipe a time
+//! stamp is that of the last tile alone; there it waits before and after each pass, and takes the clock
+//! instead.
 
 use std::cell::RefCell;
 use std::collections::VecDeque;
@@ -18,8 +19,8 @@ use crate::error::Result;
 /// Frames that may be in flight, or wait to be fetched.
 const FRAMES: usize = 8;
 
-/// Times the passes of all pipelines of one [`Gl`], by their labels, from [`begin_frame`](Self::begin_frame) to
-/// [`end_frame`](Self::end_frame).
+/// Times the passes of all pipelines of one [`Gl`], by their labels, from [`begin_frame`](Self::begin_frame)
+/// to [`end_frame`](Self::end_frame).
 ///
 /// ```no_run
 /// # fn host(gl: &varikernel::Gl) -> varikernel::Result<()> {
@@ -37,8 +38,8 @@ const FRAMES: usize = 8;
 /// }
 /// # }
 /// ```
-/// Without one, or between frames, nothing is timed. Queries are made in the first frames and used again. What is
-/// not a pass is not timed: clears, uploads and read-backs.
+/// Without one, or between frames, nothing is timed. Queries are made in the first frames and used again.
+/// What is not a pass is not timed: clears, uploads and read-backs.
 #[derive(Debug)]
 pub struct StageTimes {
     gl: Gl,
@@ -46,7 +47,7 @@ pub struct StageTimes {
     fetched: Vec<(Rc<str>, Duration)>,
 }
 
-/// What passes tell.
+/// What passes record.
 #[derive(Debug)]
 pub(super) struct Recorder {
     waits: bool,
@@ -57,7 +58,7 @@ pub(super) struct Recorder {
     recorded: VecDeque<Frame>,
     /// Fetched ones, to be used again.
     free: Vec<Frame>,
-    /// When the pass in hand began, by the clock.
+    /// When the current pass began, by the clock.
     began: Instant,
 }
 
@@ -96,8 +97,8 @@ impl StageTimes {
 
     /// Times the passes from now on; another one that was timing this [`Gl`] stops.
     ///
-    /// The frame is left out if 8 frames before it are still in flight. Of frames that came but were not fetched, the
-    /// oldest is forgotten.
+    /// The frame is left out if 8 frames before it are still in flight. Of frames that came but were not
+    /// fetched, the oldest is forgotten.
     pub fn begin_frame(&mut self) {
         self.recorder.borrow_mut().begin_frame();
         *self.gl.inner.stage_times.borrow_mut() = Rc::downgrade(&self.recorder);
@@ -115,8 +116,8 @@ impl StageTimes {
         }
     }
 
-    /// The oldest frame that was not fetched yet, if its results have come: each label once, in the order of first
-    /// appearance, with the time of all its passes together. Never waits.
+    /// The oldest frame that was not fetched yet, if its results have come: each label once, in the order of
+    /// first appearance, with the time of all its passes together. Never waits.
     pub fn poll(&mut self) -> Option<impl ExactSizeIterator<Item = (&str, Duration)>> {
         let recorder = &mut *self.recorder.borrow_mut();
         if !recorder.recorded.front()?.has_come(recorder.waits) {
@@ -171,7 +172,7 @@ impl Recorder {
             match Query::of_moments(gl).and_then(|begin| Ok([begin, Query::of_moments(gl)?])) {
                 Ok(moments) => frame.moments.push(moments),
                 Err(error) => {
-                    // The picture matters more than its times.
+                    // Without a query the frame is drawn all the same, but not timed.
                     tracing::warn!(%error, "a frame is not timed");
                     self.free.extend(self.current.take());
                     return;

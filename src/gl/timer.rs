@@ -18,19 +18,20 @@ const MARGIN: Duration = Duration::from_micros(250);
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Sample {
-    /// What GL_TIME_ELAPSED says.
+    /// The time by GL_TIME_ELAPSED.
     pub query: Duration,
-    /// What the clock says, from before the first command to after the last is finished.
+    /// The time by the clock, from before the first command to after the last is finished.
     pub wall: Duration,
 }
 
 impl Sample {
-    /// Whether query and clock contradict each other, so that one of them is not to be trusted.
+    /// Whether query and clock contradict each other, so that one of them is wrong.
     ///
-    /// The margin is 5 % of the clock's time, and at least 0.25 ms. The clock encloses the work, so that a query
-    /// beyond it by more than the margin is wrong on any device; so is a query of nothing at all. On a software
-    /// renderer both measure the same processor, and a query that falls short by more than the margin is
-    /// wrong as well. On a GPU it may fall short by any amount: the clock includes submission and the way back.
+    /// The margin is 5 % of the clock's time, and at least 0.25 ms. The clock encloses the work, so that a
+    /// query beyond it by more than the margin is wrong on any device; so is a query of nothing at all. On a
+    /// software renderer both measure the same processor, and a query that falls short by more than the
+    /// margin is wrong as well. On a GPU it may fall short by any amount: the clock includes submission and
+    /// the way back.
     #[must_use]
     pub fn is_suspect(self, software: bool) -> bool {
         let margin = self.wall.mul_f64(MARGIN_SHARE).max(MARGIN);
@@ -42,14 +43,14 @@ impl Sample {
 
 /// A query that can be used again and again; timing allocates nothing.
 ///
-/// No other GL_TIME_ELAPSED query may be running while it times: nested ones are an error in OpenGL. What is timed runs
-/// under the host's own state.
+/// No other GL_TIME_ELAPSED query may be running while it times: nested ones are an error in OpenGL. What is
+/// timed runs under the host's own state.
 #[derive(Debug)]
 pub struct Timer {
     gl: Gl,
     query: Query,
-    /// llvmpipe stamps the begin of a query while it rasterises the frame in hand: too late if that frame is the
-    /// timed work, and never if there is none. There, a frame of one pixel is put before the begin and
+    /// llvmpipe stamps the begin of a query while it rasterises the current frame: too late if that frame is
+    /// the timed work, and never if there is none. There, a frame of one pixel is put before the begin and
     /// another finished right after it.
     llvmpipe_frame: Option<Target>,
 }
@@ -73,8 +74,8 @@ impl Timer {
     /// Runs `work`, waits for it, and says how long it took on the GPU and by the clock.
     ///
     /// # Errors
-    /// Those of `work`; [`Error::QueryRunning`](crate::Error::QueryRunning) while a query of the host times, without
-    /// running `work`; [`Error::Gl`](crate::Error::Gl) if the query fails.
+    /// Those of `work`; [`Error::QueryRunning`](crate::Error::QueryRunning) while a query of the host times,
+    /// without running `work`; [`Error::Gl`](crate::Error::Gl) if the query fails.
     pub fn time<T>(&mut self, work: impl FnOnce() -> Result<T>) -> Result<(T, Sample)> {
         self.begin()?;
         let start = Instant::now();

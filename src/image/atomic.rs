@@ -10,17 +10,19 @@ use crate::error::{Error, Result};
 /// Links that are followed from one to the next, as many as Linux follows.
 const MAX_LINKS: usize = 40;
 
-/// Tells whether a file can be written at `path`, so that a caller can ask before it computes.
+/// Checks whether a file can be written at `path`, before anything is computed.
 ///
 /// # Errors
-/// If the folder is missing or can't be written to; if `path` is a folder, a device, write-protected, another user's that this
-/// one may not write or replace, or a link that leads back to itself; or if the name is longer than the system allows.
+/// If the folder is missing or can't be written to; if `path` is a folder, a device, write-protected, another
+/// user's that this one may not write or replace, or a link that leads back to itself; or if the name is
+/// longer than the system allows.
 pub fn check_writable(path: &Path) -> Result<()> {
-    // Only the attempt tells: permission bits say nothing on a read-only file system.
+    // Only an attempt is reliable: permission bits mean nothing on a read-only file system.
     temporary_beside(path).map(drop)
 }
 
-/// The file that is written for `path`: where `path` is a link, what it points to, which need not be there yet.
+/// The file that is written for `path`: where `path` is a link, what it points to, which need not be there
+/// yet.
 ///
 /// # Errors
 /// If `path` is a link that leads back to itself, or nothing can be found out about it.
@@ -38,7 +40,7 @@ pub fn output_place(path: &Path) -> Result<PathBuf> {
             }
             Ok(_) => return Ok(target),
             Err(error) if error.kind() == ErrorKind::NotFound => return Ok(target),
-            // What is wrong with the folder is told by those who write in it.
+            // Problems with the folder are reported when something is written in it.
             Err(error) if error.kind() == ErrorKind::NotADirectory => return Ok(target),
             Err(error) => return Err(unknown(path, &error)),
         }
@@ -60,14 +62,16 @@ fn unknown(path: &Path, error: &io::Error) -> Error {
     Error::file(path, problem, remedy)
 }
 
-/// Puts what `write` writes at `path`, in one step: until all of it is on the disk, a file that was there stays.
+/// Puts what `write` writes at `path`, in one step: until all of it is on the disk, a file that was there
+/// stays.
 ///
-/// A new file has the usual permissions; one that takes another's place has those of that one, and its owner and group where
-/// the system lets this user give them. Where `path` is a link, it stays, and the file that it points to is replaced or made.
+/// A new file has the usual permissions; one that takes another's place has those of that one, and its owner
+/// and group where the system lets this user give them. Where `path` is a link, it stays, and the file that
+/// it points to is replaced or made.
 ///
 /// # Errors
-/// As [`check_writable`], and if `write` fails or the disk is full. No temporary file is left, and the target is
-/// as it was.
+/// As [`check_writable`], and if `write` fails or the disk is full. No temporary file is left, and the target
+/// is as it was.
 pub fn write_atomically(
     path: &Path,
     write: impl FnOnce(&mut BufWriter<&mut File>) -> io::Result<()>,
@@ -94,12 +98,13 @@ pub fn write_atomically(
     })
 }
 
-/// Gives the new file the permissions of the one that it replaces, and its owner and group as far as this user may.
+/// Gives the new file the permissions of the one that it replaces, and its owner and group as far as this
+/// user may.
 #[cfg(unix)]
 fn take_over(new: &File, existing: &fs::Metadata) -> io::Result<()> {
     use std::os::unix::fs::{MetadataExt, PermissionsExt, fchown};
     let group = Some(existing.gid());
-    // Only the superuser may give files away: another's file becomes this user's, which the guide says.
+    // Only the superuser may give files away: another's file becomes this user's, as the guide says.
     let _ = fchown(new, Some(existing.uid()), group).or_else(|_| fchown(new, None, group));
     new.set_permissions(fs::Permissions::from_mode(existing.mode() & 0o777))
 }
@@ -165,7 +170,7 @@ fn refuse_existing(path: &Path, target: &Path, existing: &fs::Metadata) -> Resul
     if !existing.is_file() {
         return Err(Error::file(path, "is a device or a pipe, not a file", "choose a file"));
     }
-    // A rename asks the folder alone, so that it would pass over these wishes.
+    // A rename checks the folder's permissions alone, so that it would ignore these.
     if existing.permissions().readonly() {
         return Err(Error::file(
             path,
@@ -187,8 +192,8 @@ fn refuse_existing(path: &Path, target: &Path, existing: &fs::Metadata) -> Resul
     })
 }
 
-/// An error where the system would refuse the rename: in a sticky folder, as /tmp is, only the owners of a file and of the
-/// folder may replace it, even where others may write it.
+/// An error where the system would refuse the rename: in a sticky folder, as /tmp is, only the owners of a
+/// file and of the folder may replace it, even where others may write it.
 #[cfg(unix)]
 fn refuse_sticky(path: &Path, folder: &Path, existing: &fs::Metadata, ours: &File) -> Result<()> {
     use std::os::unix::fs::MetadataExt;
@@ -202,7 +207,8 @@ fn refuse_sticky(path: &Path, folder: &Path, existing: &fs::Metadata, ours: &Fil
     Err(Error::file(
         path,
         format!(
-            "there is a file of this name that belongs to another user, and in the folder {} only its owner may replace it",
+            "there is a file of this name that belongs to another user, and in the folder {} only its \
+             owner may replace it",
             folder.display()
         ),
         "choose another name or folder, or ask the owner to remove the file",

@@ -1,6 +1,6 @@
-//! What a map's file says about the map.
+//! Facts about a map in its file.
 
-/// Something about a map, written into its file.
+/// A fact about a map, written into its file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Attribute {
     /// ASCII, at most 255 bytes.

@@ -7,11 +7,12 @@ use super::Image;
 /// Where the colours begin in TURBO: before that it is nearly black, which reads as nothing at all.
 const FIRST: f64 = 0.07;
 
-/// Colours for a range of values, spread by logarithm of value + 1, as zero has a place too: from 1 to 2 is as far as
-/// from 3 to 5.
+/// Colours for a range of values, spread by logarithm of value + 1, as zero has a place too: from 1 to 2 is
+/// as far as from 3 to 5.
 ///
-/// Most radii of a good map are small, and one more pixel matters more there than at the far end. TURBO changes its hue
-/// all the way, so that 1 and 2 are apart at first sight; maps that only brighten, such as VIRIDIS, leave both dark.
+/// Most radii of a good map are small, and one more pixel matters more there than at the far end. TURBO
+/// changes its hue all the way, so that 1 and 2 are apart at first sight; maps that only brighten, such as
+/// VIRIDIS, leave both dark.
 pub(super) struct ColourMap {
     lowest: u32,
     highest: u32,

@@ -34,8 +34,8 @@ impl Colours {
 /// Reads a picture: EXR with `R`, `G` and `B` in f16, f32 or u32, or PNG of any kind.
 ///
 /// # Errors
-/// [`Error::File`] if there is no such file, it is not what its extension says, has no such channels, is damaged, or larger
-/// than [`ReadOptions::default`] allows for maps.
+/// [`Error::File`] if there is no such file, it is not what its extension says, has no such channels, is
+/// damaged, or larger than [`ReadOptions::default`] allows for maps.
 pub fn read_colours(path: &Path) -> Result<Colours> {
     let format = Format::of(path)?;
     if format == Format::Npy {

@@ -33,7 +33,8 @@ pub struct ReadOptions<'a> {
     pub channel: Option<&'a str>,
     /// The longest side that is accepted, in pixels.
     pub max_side: u32,
-    /// The most pixels that are accepted. Reading takes 4 bytes of memory a pixel, and up to 2 more for a PNG.
+    /// The most pixels that are accepted. Reading takes 4 bytes of memory a pixel, and up to 2 more for a
+    /// PNG.
     pub max_pixels: u64,
 }
 
@@ -45,7 +46,7 @@ impl Default for ReadOptions<'_> {
 }
 
 impl ReadOptions<'_> {
-    /// The size that a header claims, if it is one to allocate.
+    /// The size that a header claims, if it is within the limits.
     pub(super) fn check_size(&self, width: u64, height: u64) -> Result<UVec2, Problem> {
         if width == 0 || height == 0 {
             return Err(Problem::new(
@@ -132,7 +133,7 @@ pub(super) trait Sample: Copy + Debug {
     fn count(self) -> Result<u32, Refusal>;
 }
 
-/// What a sample says as part of a mask. Numbers that are no counts are not 0, and so say yes.
+/// A sample as part of a mask. Numbers that are no counts are not 0, and so count as set.
 fn yes_or_no(sample: impl Sample) -> Result<u32, Refusal> {
     match sample.count() {
         Ok(count) => Ok(u32::from(count != 0)),
@@ -239,9 +240,7 @@ impl Counts {
         let (x, y) = (index % self.size.x as usize, index / self.size.x as usize);
         let (what, remedy) = match self.meaning {
             Meaning::Counts => ("are not counts", reason.remedy()),
-            Meaning::Mask => {
-                ("say neither yes nor no", "give 0 where no radius is needed, else another number")
-            }
+            Meaning::Mask => ("are not numbers", "give 0 where no radius is needed, else another number"),
         };
         Err(Problem::new(
             format!(

@@ -12,7 +12,7 @@ use super::picture::{self, Picture};
 use super::{Image, exr, npy, png};
 use crate::error::{Error, Result};
 
-/// The file formats, told apart by extension in any case.
+/// The file formats, by extension in any case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
     /// `.exr`, OpenEXR.
@@ -26,7 +26,7 @@ pub enum Format {
 impl Format {
     const ALL: [Self; 3] = [Self::Exr, Self::Npy, Self::Png];
 
-    /// The format that `path` asks for.
+    /// The format by the extension of `path`.
     ///
     /// # Errors
     /// If the extension is none of the three, or missing.
@@ -73,23 +73,24 @@ impl fmt::Display for Format {
     }
 }
 
-/// Reads a map of counts: one channel of f16, f32 or u32 from EXR, a 2-D array of bool, integers, f16, f32 or f64 from
-/// NPY, 8- or 16-bit grey levels from PNG. The first row of the file is row 0.
+/// Reads a map of counts: one channel of f16, f32 or u32 from EXR, a 2-D array of bool, integers, f16, f32 or
+/// f64 from NPY, 8- or 16-bit grey levels from PNG. The first row of the file is row 0.
 ///
-/// Sizes are checked before memory is taken for pixels. What follows the end of the image in a file is not read.
+/// Sizes are checked before memory is taken for pixels. What follows the end of the image in a file is not
+/// read.
 ///
 /// # Errors
 /// If there is no such file, it is not what its extension says, it is truncated or damaged, it holds several
-/// channels and none is chosen, it is empty or larger than `options` allow, or a value is not a whole number from
-/// 0 to 4294967295.
+/// channels and none is chosen, it is empty or larger than `options` allow, or a value is not a whole number
+/// from 0 to 4294967295.
 pub fn read_counts(path: &Path, options: &ReadOptions<'_>) -> Result<Image<u32>> {
     Format::of(path)?;
     let (file, length) = open_file(path)?;
     decode(path, file, length, options)
 }
 
-/// Reads a map of counts from the bytes of a file, as [`read_counts`] does from the file itself; `name` tells the format, and
-/// stands in errors.
+/// Reads a map of counts from the bytes of a file, as [`read_counts`] does from the file itself; the
+/// extension of `name` is the format, and errors give the name.
 ///
 /// # Errors
 /// As [`read_counts`].
@@ -114,9 +115,10 @@ fn decode(
 
 /// Reads a mask: 1 for each pixel that is set in the file, else 0. Row 0 is the first row of the file.
 ///
-/// A pixel is set where it is not 0: in an NPY of any kind that [`read_counts`] takes, and in the channels of the first layer of
-/// an EXR, or where it is not black, in a PNG of any kind, 1 bit, colours and palettes too. Where there is alpha (`A` in
-/// an EXR), pixels that are wholly transparent are not set. Values need not be counts: fractions and negative numbers set.
+/// A pixel is set where it is not 0: in an NPY of any kind that [`read_counts`] takes, and in the channels of
+/// the first layer of an EXR, or where it is not black, in a PNG of any kind, 1 bit, colours and palettes
+/// too. Where there is alpha (`A` in an EXR), pixels that are wholly transparent are not set. Values need not
+/// be counts: fractions and negative numbers set.
 ///
 /// # Errors
 /// As [`read_counts`] for files; and if a value is not a number.
@@ -133,15 +135,16 @@ pub fn read_mask(path: &Path) -> Result<Image<u8>> {
     Ok(mask.map(|value| u8::from(value != 0)))
 }
 
-/// Writes counts: to EXR as one u32 channel named `channel` with `attributes`, to NPY as a 2-D array of u32, to PNG
-/// as 16-bit grey levels. [`read_counts`] gets the same map back. NPY and PNG have no place for the names.
+/// Writes counts: to EXR as one u32 channel named `channel` with `attributes`, to NPY as a 2-D array of u32,
+/// to PNG as 16-bit grey levels. [`read_counts`] gets the same map back. NPY and PNG have no place for the
+/// names.
 ///
 /// # Errors
 /// As [`write_atomically`], if the extension is unknown, or if a count is above 65535 for PNG.
 ///
 /// # Panics
-/// If `channel` or the name of an attribute is empty, longer than 255 bytes or not ASCII, or if an attribute has
-/// the name of another or of one that is in every EXR file, such as `channels`.
+/// If `channel` or the name of an attribute is empty, longer than 255 bytes or not ASCII, or if an attribute
+/// has the name of another or of one that is in every EXR file, such as `channels`.
 pub fn write_counts(path: &Path, channel: &str, image: &Image<u32>, attributes: &[Attribute]) -> Result<()> {
     match Format::of(path)? {
         Format::Exr => write_atomically(path, |file| exr::write(file, channel, image, attributes)),
@@ -153,7 +156,7 @@ pub fn write_counts(path: &Path, channel: &str, image: &Image<u32>, attributes: 
     }
 }
 
-/// Writes a colour-mapped PNG with a legend below, for people to look at; see [`Picture`].
+/// Writes a colour-mapped PNG with a legend below; see [`Picture`].
 ///
 /// # Errors
 /// As [`write_atomically`], and if the extension is not `png`.
@@ -184,7 +187,7 @@ pub(crate) fn open_file(path: &Path) -> Result<(BufReader<File>, u64)> {
         }
         _ => Error::file(path, format!("could not be opened: {error}"), "check the path"),
     };
-    // Asked first: to open a pipe would wait for its other end.
+    // Checked first: to open a pipe would wait for its other end.
     let metadata = fs::metadata(path).map_err(failed)?;
     if metadata.is_dir() {
         return Err(Error::file(path, "is a folder", "name a file in it"));

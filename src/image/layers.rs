@@ -9,8 +9,8 @@ use super::exr::{self, Samples};
 use super::{Image, png, write_atomically};
 use crate::error::Result;
 
-/// Layers of one size, to be written as one flat EXR file: channels of the layer `normal` are `normal.R` and so on, those of
-/// the unnamed layer plain `R`, `G` and `B`, which is what viewers show first.
+/// Layers of one size, to be written as one flat EXR file: channels of the layer `normal` are `normal.R` and
+/// so on, those of the unnamed layer plain `R`, `G` and `B`, which is what viewers show first.
 #[derive(Clone, Debug)]
 pub struct LayerFile {
     size: UVec2,
@@ -24,7 +24,8 @@ impl LayerFile {
         Self { size, channels: Vec::new() }
     }
 
-    /// Adds a layer of three channels, called as `letters` says; the layer without a name is the picture itself.
+    /// Adds a layer of three channels, called as `letters` says; the layer without a name is the picture
+    /// itself.
     ///
     /// # Panics
     /// If its size is another.

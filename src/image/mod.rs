@@ -62,8 +62,8 @@ pub use tone::ToneMap;
 
 use glam::UVec2;
 
-/// The photon density map that comes with the library, as an EXR file: 2.9 million landings in a Cornell box with a glass sphere,
-/// 512 x 512 pixels (`assets/maps/README.md`).
+/// The photon density map that comes with the library, as an EXR file: 2.9 million landings in a Cornell box
+/// with a glass sphere, 512 x 512 pixels (`assets/maps/README.md`).
 #[cfg(feature = "files")]
 pub const CORNELL_GLASS_EXR: &[u8] = include_bytes!("../../assets/maps/cornell_glass_512.exr");
 

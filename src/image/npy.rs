@@ -1,8 +1,8 @@
 //! NPY, the array file of NumPy: a header in Python's notation, then the samples.
 //!
-//! Read and written here and not by a crate: the header of a hostile file must cause neither an arithmetic overflow
-//! nor deep recursion nor a large allocation, and all that is needed of the format is this page.
-//! The format: <https://numpy.org/doc/stable/reference/generated/numpy.lib.format.html>
+//! Read and written here and not by a crate: the header of a hostile file must cause neither an arithmetic
+//! overflow nor deep recursion nor a large allocation, and all that is needed of the format is this page. The
+//! format: <https://numpy.org/doc/stable/reference/generated/numpy.lib.format.html>
 
 use std::io::{self, ErrorKind, Read, Write};
 
@@ -18,9 +18,10 @@ pub(super) const SIGNATURE: &[u8] = b"\x93NUMPY";
 /// The longest header that is read, in bytes; NumPy itself stops at 10000.
 const MAX_HEADER: u64 = 1 << 16;
 
-const DTYPES: &str = "save it as one of u1, u2, u4, u8, i1, i2, i4, i8, f2, f4 and f8, for example numpy.save(path, a.astype(\"u4\"))";
+const DTYPES: &str = "save it as one of u1, u2, u4, u8, i1, i2, i4, i8, f2, f4 and f8, for example \
+                      numpy.save(path, a.astype(\"u4\"))";
 
-/// What the header says.
+/// The header's fields.
 struct Header {
     /// `b`, `i`, `u` or `f`, and the bytes of one sample.
     kind: char,
@@ -55,7 +56,7 @@ pub(super) fn read(
             "truncated: the header claims {claimed} bytes of data, the file has {present}"
         )));
     }
-    // More is no fault: NumPy keeps arrays one after the other in a file, and reads the first.
+    // More bytes are allowed: NumPy writes several arrays one after the other in a file, and reads the first.
 
     let mut counts = Counts::new(size, meaning)?;
     read_samples(file, &header, size, &mut counts)

@@ -1,4 +1,4 @@
-//! A map as a picture for people: colours, and below them a legend with a bar, ticks, title and unit.
+//! A map as a picture to look at: colours, and below them a legend with a bar, ticks, title and unit.
 
 use std::ops::RangeInclusive;
 
@@ -8,18 +8,19 @@ use glam::UVec2;
 use super::Image;
 use super::colour_map::ColourMap;
 
-/// What a picture says besides its colours.
+/// A picture's legend, and the range of its colours.
 ///
-/// The colours are spread by logarithm, so that small values are told apart. The map is enlarged by a whole factor until
-/// its longer side has 256 pixels; the picture is at least 256 pixels wide, and the legend's text grows with it.
+/// The colours are spread by logarithm, so that small values can be distinguished. The map is enlarged by a
+/// whole factor until its longer side has 256 pixels; the picture is at least 256 pixels wide, and the
+/// legend's text grows with it.
 #[derive(Clone, Debug, Default)]
 pub struct Picture<'a> {
     /// One line or more, broken where it does not fit.
     pub title: &'a str,
     /// The unit of the values, for example `pixels`; none if empty.
     pub unit: &'a str,
-    /// The values at the ends of the bar, lowest first; values outside get the colour of the nearer end. `None`
-    /// takes the lowest and highest value of the map.
+    /// The values at the ends of the bar, lowest first; values outside get the colour of the nearer end.
+    /// `None` takes the lowest and highest value of the map.
     pub range: Option<RangeInclusive<u32>>,
 }
 
@@ -152,8 +153,8 @@ fn fill(canvas: &mut Image<[u8; 3]>, corner: UVec2, size: UVec2, colour: [u8; 3]
     }
 }
 
-/// Round values strictly between the ends, the best first: 1, 2 and 5 times each power of ten suit a bar spread by
-/// logarithm, even steps fill it where the range begins far from zero.
+/// Round values strictly between the ends, the best first: 1, 2 and 5 times each power of ten suit a bar
+/// spread by logarithm, even steps fill it where the range begins far from zero.
 fn ticks(lowest: u32, highest: u32) -> impl Iterator<Item = u32> {
     let round: Vec<u64> =
         (0..10).flat_map(|power| [1, 2, 5].map(|digit| digit * 10_u64.pow(power))).collect();

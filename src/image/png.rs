@@ -1,4 +1,4 @@
-//! PNG in two meanings: grey levels that are counts, and colours for people to look at.
+//! PNG in two meanings: grey levels that are counts, and colours to look at.
 
 use std::io::{self, BufRead, Read, Seek, SeekFrom, Write};
 
@@ -50,7 +50,8 @@ pub(super) fn read(
     counts.finish()
 }
 
-/// Reads any PNG as a mask: 1 where a colour or grey level is not 0 and the pixel is not wholly transparent, else 0.
+/// Reads any PNG as a mask: 1 where a colour or grey level is not 0 and the pixel is not wholly transparent,
+/// else 0.
 pub(super) fn read_mask(
     mut file: impl BufRead + Seek,
     length: u64,
@@ -72,9 +73,10 @@ pub(super) fn read_mask(
     Ok(Image::from_values(size, bytes.chunks_exact(pixel).map(|pixel| u32::from(is_set(pixel))).collect()))
 }
 
-/// What a PNG says before its pixels.
+/// The header of a PNG.
 ///
-/// The decoder hands out 1, 2 and 4 bits as rescaled 8 bits without saying so; only the file's own header tells.
+/// The decoder hands out 1, 2 and 4 bits as rescaled 8 bits without reporting it; only the file's own header
+/// has the number.
 struct Header {
     width: u32,
     height: u32,
@@ -135,7 +137,8 @@ impl Header {
     }
 }
 
-/// An error where the last chunk is missing: the decoder stops after the last pixel. What follows that chunk is nobody's.
+/// An error where the last chunk is missing: the decoder stops after the last pixel. What follows that chunk
+/// is ignored.
 pub(super) fn check_end(file: &mut (impl Read + Seek), length: u64) -> io::Result<()> {
     let mut place = SIGNATURE.len() as u64;
     file.seek(SeekFrom::Start(place))?;
@@ -169,7 +172,8 @@ pub(super) fn grey_levels(image: &Image<u32>) -> Result<Vec<u16>, Problem> {
         let (x, y) = (index % width, index / width);
         return Err(Problem::new(
             format!(
-                "a PNG holds counts to 65535, and the count at ({x}, {y}) is {count}; {} of {} pixels are above it",
+                "a PNG holds counts to 65535, and the count at ({x}, {y}) is {count}; {} of {} \
+                 pixels are above it",
                 too_large.len(),
                 image.values().len()
             ),

@@ -1,4 +1,4 @@
-//! Files that are not finished yet, and a list of them for a program that is told to end.
+//! Files that are not finished yet, and a list of them for a program that ends by a signal.
 
 use std::collections::BTreeSet;
 use std::ffi::OsStr;
@@ -9,38 +9,39 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use tempfile::NamedTempFile;
 
-/// Bytes of the target's name that the temporary name repeats. With the rest it stays below the 143 bytes to which some
-/// encrypting file systems limit a name; most have 255.
+/// Bytes of the target's name that the temporary name repeats. With the rest it stays below the 143 bytes to
+/// which some encrypting file systems limit a name; most have 255.
 const REPEATED: usize = 96;
 
-/// Where the unfinished files of this process are. The one thing that this library shares among all threads: a program that
-/// ends by a signal has no other way to them.
+/// Where the unfinished files of this process are. The only state that all threads share: a program that ends
+/// by a signal has no other access to them.
 static UNFINISHED: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
 
 fn unfinished() -> MutexGuard<'static, BTreeSet<PathBuf>> {
-    // A set of paths is whole at any time.
+    // A set of paths is valid even if a thread panicked.
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Keeps this process from beginning or finishing files as long as it lives; see [`discard_unfinished_files`].
+/// Keeps this process from beginning or finishing files as long as it lives; see
+/// [`discard_unfinished_files`].
 #[derive(Debug)]
 pub struct Discarded {
     _unfinished: MutexGuard<'static, BTreeSet<PathBuf>>,
 }
 
-/// Removes what this process has begun to write and not finished: the temporary files of [`write_atomically`]. Files that
-/// are finished stay, and so do those that were there before.
+/// Removes what this process has begun to write and not finished: the temporary files of
+/// [`write_atomically`]. Files that are finished stay, and so do those that were there before.
 ///
-/// For programs that end by a signal: end the process while the answer lives. Until then, other threads wait where they
-/// would begin or finish a file; those that go on after it get an error, as their file is gone. This library itself handles
-/// no signals and ends no process.
+/// For programs that end by a signal: end the process while the answer lives. Until then, other threads wait
+/// where they would begin or finish a file; those that go on after it get an error, as their file is gone.
+/// This library itself handles no signals and ends no process.
 ///
 /// [`write_atomically`]: super::write_atomically
 #[must_use = "files can be begun again once this is dropped"]
 pub fn discard_unfinished_files() -> Discarded {
     let mut unfinished = unfinished();
     for path in std::mem::take(&mut *unfinished) {
-        // Nobody is left to tell that one could not be removed.
+        // The program is ending, so that an error could not be reported.
         let _ = fs::remove_file(path);
     }
     Discarded { _unfinished: unfinished }
@@ -87,7 +88,7 @@ impl Temporary {
         let list = unfinished();
         let Self { file, _listed: listed } = self;
         let finished = file.persist(target);
-        // Its own drop asks for the list.
+        // Its own drop locks the list.
         drop(list);
         drop(listed);
         finished.map(drop).map_err(|refused| refused.error)

@@ -4,9 +4,9 @@ use super::Image;
 
 /// How radiance becomes colours: scaled by 2^`exposure`, compressed by luminance, then encoded as sRGB.
 ///
-/// The operator is E. Reinhard and others, "Photographic Tone Reproduction for Digital Images" (2002), equation 4: a
-/// luminance L becomes L (1 + L / W²) / (1 + L), so that `white`, W, becomes 1. Colours keep their hue; what is
-/// then still above 1 is cut off.
+/// The operator is E. Reinhard and others, "Photographic Tone Reproduction for Digital Images" (2002),
+/// equation 4: a luminance L becomes L (1 + L / W²) / (1 + L), so that `white`, W, becomes 1. Colours keep
+/// their hue; what is then still above 1 is cut off.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ToneMap {
     /// In stops: each doubles the light.
@@ -23,8 +23,8 @@ impl Default for ToneMap {
 }
 
 impl ToneMap {
-    /// The usual one with the exposure that brings the logarithmic mean luminance of an image's lit pixels to one third, as
-    /// equations 1 and 2 of the same paper do; 2 stops where nothing is lit.
+    /// The usual one with the exposure that brings the logarithmic mean luminance of an image's lit pixels to
+    /// one third, as equations 1 and 2 of the same paper do; 2 stops where nothing is lit.
     #[must_use]
     pub fn fitting(image: &Image<[f32; 3]>) -> Self {
         let lit = image.values().iter().map(|&colour| luminance(colour)).filter(|&luminance| luminance > 0.0);

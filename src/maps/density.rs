@@ -8,10 +8,11 @@ use crate::error::{Error, Result};
 use crate::gl::{Gl, StateGuard, Texture, TextureFormat};
 use crate::image::Image;
 
-/// Photons per pixel: a GL_R32UI or GL_R8UI texture, or a GL_R32F one as additive blending of points fills it.
+/// Photons per pixel: a GL_R32UI or GL_R8UI texture, or a GL_R32F one as additive blending of points fills
+/// it.
 ///
-/// Values are whole and not negative; in GL_R32F they are exact up to 2^24 a pixel, where adding 1 stops to count.
-/// Of a fraction the whole part counts; NaN counts as anything.
+/// Values are whole and not negative; in GL_R32F they are exact up to 2^24 a pixel, where adding 1 stops to
+/// count. Of a fraction the whole part counts; NaN counts as anything.
 #[derive(Debug)]
 pub struct DensityMap {
     texture: Texture,
@@ -51,11 +52,11 @@ impl DensityMap {
         Ok(())
     }
 
-    /// Uses a texture that the host owns and keeps alive as long as this; its contents may change between frames, but
-    /// after a new glTexImage2D it has to be borrowed again.
+    /// Uses a texture that the host owns and keeps alive as long as this; its contents may change between
+    /// frames, but after a new glTexImage2D it has to be borrowed again.
     ///
-    /// `bounds` says what the host knows of its counts; with [`CountBounds::UNKNOWN`] a result is refused unless n
-    /// and MR alone prove it exact.
+    /// `bounds` is what the host knows of its counts; with [`CountBounds::UNKNOWN`] a result is refused
+    /// unless n and MR alone prove it exact.
     ///
     /// # Errors
     /// [`Error::Mismatch`] unless it is a GL_TEXTURE_2D in GL_R32UI, GL_R32F or GL_R8UI, with

@@ -2,22 +2,23 @@
 //!
 //! Three facts carry the rules (S counts the photons of a box, T is its area, I its area inside the map):
 //!
-//! 1. An unsigned table that wraps still gives the right S while the *box* holds less than 2^32, since the four
-//!    texels are added modulo 2^32; the total does not matter (`u32-wraps`). In 16 bits, the same holds of 2^16
-//!    (`u16-wraps`).
-//! 2. `min(count, n)` in place of each count changes no radius: a box with a pixel of n or more holds enough either
-//!    way, and in the others nothing is clamped (`clamped-counts`). Then S <= n I, so T n < 2^32 (2^16) is enough for any
-//!    map at all.
-//! 3. f32 holds every whole number up to 2^24; a table in f32 is exact while its *total*, its largest entry, stays
-//!    there (`f32-total`), and a pyramid or a brute-force sum while each box does. In f16, the same holds of 2^11
-//!    (`f16-total`).
+//! 1. An unsigned table that wraps still gives the right S while the *box* holds less than 2^32, since the
+//!    four texels are added modulo 2^32; the total does not matter (`u32-wraps`). In 16 bits, the same holds
+//!    of 2^16 (`u16-wraps`).
+//! 2. `min(count, n)` in place of each count changes no radius: a box with a pixel of n or more holds enough
+//!    either way, and in the others nothing is clamped (`clamped-counts`). Then S <= n I, so T n < 2^32
+//!    (2^16) is enough for any map at all.
+//! 3. f32 holds every whole number up to 2^24; a table in f32 is exact while its *total*, its largest entry,
+//!    stays there (`f32-total`), and a pyramid or a brute-force sum while each box does. In f16, the same
+//!    holds of 2^11 (`f16-total`).
 //!
-//! The scaled test S T >= n I needs products only where S < n, so they fit 32 bits while T n < 2^32; past that the
-//! shaders multiply in two words (`wide-products`).
+//! The scaled test S T >= n I needs products only where S < n, so they fit 32 bits while T n < 2^32; past
+//! that the shaders multiply in two words (`wide-products`).
 //!
-//! So what is accepted is right (`accepted-is-exact`, `default-is-exact`), all else is refused by [`plan`], and by a render
-//! in place of its map (`refused-first`), and one photon past the limits of u32, u16, f32 and f16 can give wrong radii
-//! (`limits-are-real`). The names are those of the promises that `varikernel stress` puts to the test, and of its rows.
+//! So what is accepted is right (`accepted-is-exact`, `default-is-exact`), all else is refused by [`plan`],
+//! and by a render in place of its map (`refused-first`), and one photon past the limits of u32, u16, f32 and
+//! f16 can give wrong radii (`limits-are-real`). The names are those of the promises that `varikernel stress`
+//! tests, and of its rows.
 
 use glam::UVec2;
 
@@ -25,8 +26,8 @@ use crate::error::{Error, Result};
 use crate::image::Image;
 use crate::settings::{Exactness, Faults, Method, Order, Search, Settings, Storage};
 
-/// Upper bounds for the sums in a density map, and the question that they were found for; what is not known is
-/// [`u64::MAX`].
+/// Upper bounds for the sums in a density map, and the question that they were found for; what is not known
+/// is [`u64::MAX`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CountBounds {
     /// The sum of all counts.
@@ -69,19 +70,21 @@ impl CountBounds {
         }
     }
 
-    /// The bounds of `density` itself; boxes are looked at only where the total does not settle it.
+    /// The bounds of `density` itself; boxes are summed only where the total does not decide.
     #[must_use]
     pub fn of(density: &Image<u32>, search: Search) -> Self {
         Self::where_total_exceeds(F32_MAX, U32_MAX, density, search)
     }
 
-    /// As [`of`](Self::of), but close enough for [`Storage::U16`]: boxes are looked at unless the whole map fits one.
+    /// As [`of`](Self::of), but close enough for [`Storage::U16`]: boxes are summed unless the whole map fits
+    /// one.
     #[must_use]
     pub fn of_boxes(density: &Image<u32>, search: Search) -> Self {
         Self::where_total_exceeds(U16_MAX, U16_MAX, density, search)
     }
 
-    /// Looks at boxes where the total exceeds `total_limit`, at boxes of clamped counts where those exceed `box_limit`.
+    /// Sums boxes where the total exceeds `total_limit`, and boxes of clamped counts where those exceed
+    /// `box_limit`.
     fn where_total_exceeds(total_limit: u64, box_limit: u64, density: &Image<u32>, search: Search) -> Self {
         let total = density.values().iter().map(|&count| u64::from(count)).sum();
         if total <= total_limit {
@@ -134,7 +137,8 @@ const F16_MAX: u64 = 1 << 11;
 pub struct Plan {
     /// Larger counts are taken as this many; n where clamping is what makes the sums fit.
     pub count_limit: u32,
-    /// Whether every radius is proved equal to the definition (always so unless waived or the method approximates).
+    /// Whether every radius is proved equal to the definition (always so unless waived or the method
+    /// approximates).
     pub exact: bool,
 }
 
@@ -217,7 +221,7 @@ pub(crate) fn needs_wide_products(settings: &Settings) -> bool {
     largest_area(settings, UVec2::MAX) * u64::from(settings.search.min_photons) > U32_MAX
 }
 
-/// The largest T that the search asks for, cut to the map where it is a sum's area that matters.
+/// The largest T of the search, cut to the map where the area of a sum matters.
 fn largest_area(settings: &Settings, size: UVec2) -> u64 {
     let radius = u64::from(settings.search.largest_counted_radius());
     let longest = match settings.method {

@@ -1,4 +1,5 @@
-//! What a host's frame brings: the density map, the pixels that need a radius, and what differs from the frame before.
+//! What a host's frame brings: the density map, the pixels that need a radius, and what differs from the
+//! frame before.
 
 use glam::UVec2;
 
@@ -26,14 +27,15 @@ impl<'a> Frame<'a> {
     }
 }
 
-/// Where a frame differs from the one before it, as the host vouches.
+/// Where a frame differs from the one before it, as the host guarantees.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Changed {
     /// Anywhere.
     Everything,
     /// Nowhere: the radii of the frame before are the answer, and nothing is drawn.
     Nothing,
-    /// In the `size` columns and rows from `first` on; what reaches past the map is ignored.
+    /// In the `size` columns and rows from `first` on, a dirty rectangle; what reaches past the map is
+    /// ignored.
     Rectangle {
         /// First column and row.
         first: UVec2,

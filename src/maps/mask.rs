@@ -1,4 +1,4 @@
-//! Which pixels need a radius: a texture of the host, or what its depth or stencil buffer says.
+//! Which pixels need a radius: a texture of the host, or made from its depth or stencil buffer.
 
 use glam::UVec2;
 
@@ -11,8 +11,8 @@ use crate::image::Image;
 
 const TESTED: &str = "mask of tested pixels";
 
-/// Which pixels need a radius: a GL_R8UI, GL_R16UI or GL_R32UI texture, 0 where none is needed (background, no receiver,
-/// a radius that is still valid elsewhere).
+/// Which pixels need a radius: a GL_R8UI, GL_R16UI or GL_R32UI texture, 0 where none is needed (background,
+/// no receiver, a radius that is still valid elsewhere).
 ///
 /// Their radius is 0, which no other pixel has, and they are not limited.
 #[derive(Debug)]
@@ -33,7 +33,8 @@ impl Mask {
         Ok(Self { texture })
     }
 
-    /// Uses a texture that the host owns and keeps alive as long as this; its contents may change between frames.
+    /// Uses a texture that the host owns and keeps alive as long as this; its contents may change between
+    /// frames.
     ///
     /// # Errors
     /// [`Error::Mismatch`] unless it is a GL_TEXTURE_2D of one of the formats above, with level 0
@@ -62,7 +63,7 @@ impl Mask {
     }
 }
 
-/// Makes masks of a host's depth or stencil buffers, for those who have no mask: one pass and one byte a pixel.
+/// Makes masks of a host's depth or stencil buffers, for hosts without a mask: one pass and one byte a pixel.
 #[derive(Debug)]
 pub struct MaskMaker {
     gl: Gl,
@@ -85,7 +86,8 @@ impl MaskMaker {
         Ok(Self { gl: gl.clone(), program: Program::new(gl, &Self::shader_source())?, target, mask })
     }
 
-    /// Pixels that have something in front of the far plane: whose depth is less than 1, or, `reversed`, more than 0.
+    /// Pixels that have something in front of the far plane: whose depth is less than 1, or, `reversed`, more
+    /// than 0.
     ///
     /// # Errors
     /// [`Error::Mismatch`] unless `depth` is a GL_TEXTURE_2D with depth, of the masks' size.

@@ -5,8 +5,8 @@ use crate::error::{Error, Result};
 use crate::gl::{Gl, StateGuard, Vertices};
 use crate::photon::PhotonPoint;
 
-/// Photons in a buffer: as many as the table of their areas has entries, and few enough that sums of one buffer's kernels
-/// stay exact to about 2^-9 (see `splat`).
+/// Photons in a buffer: as many as the table of their areas has entries, and few enough that sums of one
+/// buffer's kernels stay exact to about 2^-9 (see `splat`).
 const CHUNK: u32 = 1 << 16;
 
 /// Photons on the GPU.
@@ -26,8 +26,9 @@ impl PhotonPoints {
         Self { gl: gl.clone(), chunks: Vec::new(), spare: Vec::new(), borrowed: false }
     }
 
-    /// Reads the first `count` photons of a vertex buffer that the host owns and keeps alive as long as this: 40 bytes each,
-    /// as [`PhotonPoint`] has them. Their values may change between frames, not the buffer's size.
+    /// Reads the first `count` photons of a vertex buffer that the host owns and keeps alive as long as this:
+    /// 40 bytes each, as [`PhotonPoint`] has them. Their values may change between frames, not the buffer's
+    /// size.
     ///
     /// # Errors
     /// [`Error::Mismatch`] if it is no buffer, or has no room for them; [`Error::Gl`] when names run out.
@@ -57,7 +58,8 @@ impl PhotonPoints {
         Ok(())
     }
 
-    /// Puts other photons in the place of all, in the buffers that are there: for photons that are new each frame.
+    /// Puts other photons in the place of all, in the buffers that are there: for photons that are new each
+    /// frame.
     ///
     /// # Errors
     /// As [`upload`](Self::upload); there are no photons then.

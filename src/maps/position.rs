@@ -1,9 +1,9 @@
 //! A host's depth buffer to the places that its pixels show.
 //!
 //! - Cost: one pass, one fetch a pixel. Memory: 16 bytes a pixel.
-//! - Rounding: a depth of 24 bits or f32 places a surface at distance z to about 2^-24 z² / near along the line of sight, a 32-bit
-//!   reversed one to about 2^-24 z. Photons are looked for within half a pixel of the surface, so that near / far may be 10^-4 or
-//!   less; a depth of 16 bits is too coarse.
+//! - Rounding: a depth of 24 bits or f32 places a surface at distance z to about 2^-24 z² / near along the
+//!   line of sight, a 32-bit reversed one to about 2^-24 z. Photons are looked for within half a pixel of the
+//!   surface, so that near / far may be 10^-4 or less; a depth of 16 bits is too coarse.
 
 use crate::error::Result;
 use crate::gl::{Gl, Pass, Program, ShaderSource, StateGuard, Target, Texture, TextureFormat, glsl};
@@ -34,13 +34,13 @@ pub struct PositionMaker {
 }
 
 impl PositionMaker {
-    /// Uses a depth buffer that the host owns and keeps alive as long as this; its contents may change between frames. Allocates and
-    /// compiles for its size.
+    /// Uses a depth buffer that the host owns and keeps alive as long as this; its contents may change
+    /// between frames. Allocates and compiles for its size.
     ///
     /// # Errors
     /// [`Error::Mismatch`](crate::Error::Mismatch) unless the texture is a GL_TEXTURE_2D with depth;
-    /// [`Error::Shader`](crate::Error::Shader) if the driver refuses the shader; [`Error::Gl`](crate::Error::Gl) when memory runs
-    /// out.
+    /// [`Error::Shader`](crate::Error::Shader) if the driver refuses the shader;
+    /// [`Error::Gl`](crate::Error::Gl) when memory runs out.
     pub fn borrow(gl: &Gl, depth: HostDepth) -> Result<Self> {
         let _state = StateGuard::new(gl);
         let HostDepth { texture, reversed, zero_to_one } = depth;
@@ -56,8 +56,8 @@ impl PositionMaker {
         })
     }
 
-    /// The places that the depth buffer shows, drawn with the matrices of `view`: GL_RGBA32F, the depth along the view in the fourth
-    /// value, all 0 where the depth is that of the far plane.
+    /// The places that the depth buffer shows, drawn with the matrices of `view`: GL_RGBA32F, the depth along
+    /// the view in the fourth value, all 0 where the depth is that of the far plane.
     ///
     /// # Errors
     /// [`Error::Mismatch`](crate::Error::Mismatch) unless the view has the size of the depth buffer;

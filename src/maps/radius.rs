@@ -32,8 +32,8 @@ impl RadiusMap {
         Self { target }
     }
 
-    /// Uses radii that the host found by itself, and the GL_R8UI mask of limited pixels if it has one, to be certified;
-    /// the host keeps both alive as long as this.
+    /// Uses radii that the host found by itself, and the GL_R8UI mask of limited pixels if it has one, to be
+    /// certified; the host keeps both alive as long as this.
     ///
     /// # Errors
     /// [`Error::Mismatch`] unless they are GL_TEXTURE_2D in GL_R32UI and GL_R8UI, of one size, with
@@ -69,7 +69,8 @@ impl RadiusMap {
         self.target.texture().name()
     }
 
-    /// The GL_R8UI texture that is 1 where MR ended the search with too few photons, if it was asked for.
+    /// The GL_R8UI texture that is 1 where MR ended the search with too few photons (where the radius is
+    /// saturated), if it was requested.
     #[must_use]
     pub fn limited_texture(&self) -> Option<glow::Texture> {
         self.limited().map(Texture::name)
@@ -86,7 +87,7 @@ impl RadiusMap {
         Ok(radii)
     }
 
-    /// Reads the mask back, if it was asked for; waits for the GPU.
+    /// Reads the mask back, if it was requested; waits for the GPU.
     ///
     /// # Errors
     /// [`Error::Gl`] if the driver fails, as when the context is lost.

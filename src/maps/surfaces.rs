@@ -23,12 +23,14 @@ pub struct SurfaceMaps {
 /// A host's g-buffer: GL_TEXTURE_2D of one size.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HostSurfaces {
-    /// GL_RGBA32F: x, y, z of the place in scene units; the fourth value is its depth along the view, in scene units, 0 where
-    /// nothing is seen. [`PositionMaker`](crate::PositionMaker) makes it of a depth buffer.
+    /// GL_RGBA32F: x, y, z of the place in scene units; the fourth value is its depth along the view, in
+    /// scene units, 0 where nothing is seen. [`PositionMaker`](crate::PositionMaker) makes it of a depth
+    /// buffer.
     pub position: glow::Texture,
-    /// GL_RGBA32F, GL_RGBA16F, GL_RGB32F or GL_RGB16F: the normal, of length 1, towards the camera, in the axes of `position`; the
-    /// fourth value is the surface's number, so that light does not leak between surfaces: from 1, negative where photons
-    /// do not land (mirrors, glass), 0 where nothing is seen. Without a fourth value all surfaces are number 1.
+    /// GL_RGBA32F, GL_RGBA16F, GL_RGB32F or GL_RGB16F: the normal, of length 1, towards the camera, in the
+    /// axes of `position`; the fourth value is the surface's number, so that light does not leak between
+    /// surfaces: from 1, negative where photons do not land (mirrors, glass), 0 where nothing is seen.
+    /// Without a fourth value all surfaces are number 1.
     pub normal: glow::Texture,
 }
 
@@ -46,12 +48,12 @@ impl SurfaceMaps {
         Ok(Self { position, normal, albedo: Some(albedo), target: Some(target), view })
     }
 
-    /// Uses textures that the host owns and keeps alive as long as this; their contents may change between frames, and so may
-    /// the camera, by [`set_view`](Self::set_view).
+    /// Uses textures that the host owns and keeps alive as long as this; their contents may change between
+    /// frames, and so may the camera, by [`set_view`](Self::set_view).
     ///
     /// # Errors
-    /// [`Error::Mismatch`] unless they are GL_TEXTURE_2D in the formats that [`HostSurfaces`] names, of the size of `view`, with
-    /// level 0 as their base and all values where they belong.
+    /// [`Error::Mismatch`] unless they are GL_TEXTURE_2D in the formats that [`HostSurfaces`] names, of the
+    /// size of `view`, with level 0 as their base and all values where they belong.
     pub fn borrow(gl: &Gl, view: View, surfaces: HostSurfaces) -> Result<Self> {
         use TextureFormat::{Rgb16Float, Rgb32Float, Rgba16Float, Rgba32Float};
 
@@ -101,8 +103,8 @@ impl SurfaceMaps {
         Self::read(Some(&self.position))
     }
 
-    /// Normals of length 1 towards the camera, and the surface's number: its index plus 1, negative for mirrors and glass,
-    /// 0 where nothing is seen.
+    /// Normals of length 1 towards the camera, and the surface's number: its index plus 1, negative for
+    /// mirrors and glass, 0 where nothing is seen.
     ///
     /// # Errors
     /// [`Error::Gl`] if the driver fails.
@@ -173,7 +175,7 @@ impl SurfaceMaps {
     /// Albedo, and what our own surfaces are drawn to.
     ///
     /// # Panics
-    /// If the surfaces are a host's: our own mistake.
+    /// If the surfaces are a host's, which is a bug of the library.
     #[cfg(feature = "scene")]
     pub(crate) fn albedo(&self) -> &Texture {
         self.albedo.as_ref().expect("surfaces of a scene")

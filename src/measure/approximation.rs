@@ -1,8 +1,10 @@
-//! Radii that are not searched at every pixel: approximations that the study holds against the exact ones.
+//! Radii that are not searched at every pixel: approximations that the study compares with the exact ones.
 //!
-//! - *Half density*: photons of 2 x 2 pixels are one texel; radii are searched there, up to MR / 2. A box of radius r there is
-//!   2 (2 r + 1) pixels wide, so that the radius here is 2 r - 1 or 2 r; 2 r - 1/2 is interpolated and rounded.
-//! - *Grid*: a table of all counts, but a search at every k-th pixel of every k-th row only, interpolated between.
+//! - *Half density*: photons of 2 x 2 pixels are one texel; radii are searched there, up to MR / 2. A box of
+//!   radius r there is 2 (2 r + 1) pixels wide, so that the radius here is 2 r - 1 or 2 r; 2 r - 1/2 is
+//!   interpolated and rounded.
+//! - *Grid*: a table of all counts, but a search at every k-th pixel of every k-th row only, interpolated
+//!   between.
 //!
 //! Both are wrong where radii change faster than the places lie; neither is ever a default.
 

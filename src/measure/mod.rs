@@ -1,7 +1,8 @@
-//! What measuring needs of the inside: passes that times are told in, and approximations to be held against the exact radii.
+//! What measuring needs of the inside: passes that serve as units of time, and approximations to compare with
+//! the exact radii.
 //!
-//! None of it makes a radius map or a picture better. The package `varikernel-lab` is built on it, and hosts may compare
-//! their own times with the same units.
+//! None of it makes a radius map or a picture better. The package `varikernel-lab` is built on it, and hosts
+//! may compare their own times with the same units.
 
 mod approximation;
 #[cfg(feature = "scene")]

@@ -1,4 +1,4 @@
-//! The pass that draws of photons are told in: every photon as a point, nothing read, one added to GL_R32F.
+//! The unit of time for draws of photons: every photon as a point, nothing read, one added to GL_R32F.
 
 use glam::Vec4;
 

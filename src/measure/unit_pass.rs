@@ -1,7 +1,8 @@
-//! The passes that other times are told in: a copy and a probe.
+//! The units of time: a copy and a probe.
 //!
-//! Milliseconds tell of one machine on one day. A time in copies, measured in the same run at the same size, lasts:
-//! it says how many times a pass reads and writes as much as it must.
+//! Milliseconds hold for one machine in one state. A time in copies, measured in the same run at the same
+//! size, can be compared between machines: it is the time in multiples of a pass that reads and writes each
+//! texel once.
 
 use glam::UVec2;
 
@@ -39,7 +40,7 @@ impl Unit {
         }
     }
 
-    /// What the pass gives for `counts`, on the CPU.
+    /// The result of the pass for `counts`, on the CPU.
     #[must_use]
     pub fn expected(self, counts: &Image<u32>) -> Image<u32> {
         match self {

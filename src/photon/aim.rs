@@ -5,11 +5,12 @@ use glam::{DVec3, Vec3};
 use super::emission::{Cone, Leaving};
 use crate::scene::{AreaLight, Light, LightShape, Scene};
 
-/// A light is far if it is this many times the radius of the sphere around everything else away from its middle: then less than a
-/// sixtieth of all directions leads there.
+/// A light is far if it is this many times the radius of the sphere around everything else away from its
+/// middle: then less than a sixtieth of all directions leads there.
 const FAR: f64 = 4.0;
 
-/// Corners times triangles of a light for which is asked whether it lights itself; with more, it is taken to do so.
+/// Corners times triangles of a light for which is asked whether it lights itself; with more, it is taken to
+/// do so.
 const MOST_PAIRS: usize = 1 << 24;
 /// A corner this far before a triangle, as a share of its distance, is in the triangle's plane.
 const IN_PLANE: f64 = 1e-6;
@@ -31,8 +32,8 @@ impl Aim {
         Cone::new(away, height)
     }
 
-    /// Where a photon starts: near the sphere, as nothing is before that. From far away its place and direction, which are kept in f32,
-    /// would be too coarse.
+    /// Where a photon starts: near the sphere, as nothing is before that. From far away its place and
+    /// direction, which are kept in f32, would be too coarse.
     pub(super) fn near(&self, leaving: &Leaving) -> DVec3 {
         let skipped = (self.centre - leaving.origin).dot(leaving.direction) - 1.5 * self.radius;
         leaving.origin + skipped.max(0.0) * leaving.direction

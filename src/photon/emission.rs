@@ -1,8 +1,9 @@
 //! Where photons start.
 //!
-//! Each light gets photons by its share of the power, so that all photons carry about the same. Their starting points
-//! (for point lights: directions) are stratified: one in each cell of equal area, at random inside it. A light that is far from
-//! everything else sends its photons towards that alone, each with its part of the light that goes there.
+//! Each light gets photons by its share of the power, so that all photons carry about the same. Their
+//! starting points (for point lights: directions) are stratified: one in each cell of equal area, at random
+//! inside it. A light that is far from everything else sends its photons towards that alone, each with its
+//! part of the light that goes there.
 
 use std::f64::consts::{PI, TAU};
 
@@ -22,11 +23,13 @@ const START_MARGIN: f64 = 2.5e-7;
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct EmittedPhoton {
-    /// On the light, in scene units; of a far light, on the way from there, before it comes to the rest of the scene.
+    /// On the light, in scene units; of a far light, on the way from there, before it comes to the rest of
+    /// the scene.
     pub origin: Vec3,
     /// Of length 1.
     pub direction: Vec3,
-    /// Linear RGB; all photons together carry the power of all lights, of a far one what goes towards the rest of the scene.
+    /// Linear RGB; all photons together carry the power of all lights, of a far one what goes towards the
+    /// rest of the scene.
     pub power: Vec3,
     /// Its number, which decides its further way together with the seed.
     pub id: u32,
@@ -62,11 +65,12 @@ struct Part<'a> {
 }
 
 impl<'a> Emission<'a> {
-    /// Shares `settings.photons` among the lights of the scene by the power that they send; each gets at least one, however weak it is.
+    /// Shares `settings.photons` among the lights of the scene by the power that they send; each gets at
+    /// least one, however weak it is.
     ///
     /// # Errors
-    /// [`Error::NoLight`]; [`Error::Setting`] for settings that are not possible, if there are fewer photons than lights, or if
-    /// the power of a photon does not fit f32.
+    /// [`Error::NoLight`]; [`Error::Setting`] for settings that are not possible, if there are fewer photons
+    /// than lights, or if the power of a photon does not fit f32.
     pub fn new(scene: &'a Scene, settings: &TraceSettings) -> Result<Self> {
         settings.validate()?;
         let refuse = |reason: String| {
@@ -81,14 +85,12 @@ impl<'a> Emission<'a> {
             shining.iter().zip(&aims).map(|(light, aim)| sent(light, aim.as_ref()).element_sum()).collect();
         let Some(counts) = counts(&weights, settings.photons) else {
             let lights = shining.len();
-            return refuse(format!(
-                "each of the {lights} lights takes at least one; ask for {lights} or more"
-            ));
+            return refuse(format!("each of the {lights} lights takes at least one; give {lights} or more"));
         };
         let (mut parts, mut first) = (Vec::new(), 0);
         for ((light, aim), count) in shining.iter().zip(aims).zip(counts) {
             if !(light.flux() / f64::from(count)).as_vec3().is_finite() {
-                return refuse(format!("the light \"{}\" is brighter than f32 can tell", light.name));
+                return refuse(format!("the light \"{}\" is brighter than f32 can hold", light.name));
             }
             parts.push(Part { shape: &light.shape, first, count, aim });
             first += count;
@@ -114,7 +116,8 @@ impl<'a> Emission<'a> {
         self.parts.partition_point(|part| part.first <= id) - 1
     }
 
-    /// Whether the photons of one of the lights that shine start where they come near the scene, and not on the light.
+    /// Whether the photons of one of the lights that shine start where they come near the scene, and not on
+    /// the light.
     pub(crate) fn is_aimed(&self, light: usize) -> bool {
         self.parts[light].aim.is_some()
     }
@@ -145,7 +148,8 @@ impl<'a> Emission<'a> {
     }
 }
 
-/// The power that a light's photons carry, linear RGB: all of it, or of a far one what goes towards the rest of the scene, by some samples.
+/// The power that a light's photons carry, linear RGB: all of it, or of a far one what goes towards the rest
+/// of the scene, by some samples.
 fn sent(light: &Light, aim: Option<&Aim>) -> DVec3 {
     const SIDE: u32 = 8;
     let Some(aim) = aim else { return light.flux() };
@@ -209,7 +213,8 @@ pub(super) struct Leaving {
     power: DVec3,
 }
 
-/// Directions around an axis, up to an angle whose 1 - cos is the height, which tells small angles as well as large ones.
+/// Directions around an axis, up to an angle whose 1 - cos is the height, which is precise for small angles
+/// as well as large ones.
 pub(super) struct Cone {
     axis: DVec3,
     height: f64,
@@ -259,7 +264,8 @@ fn leave_area(light: &AreaLight, aim: Option<&Aim>, uv: [f64; 2], random: &mut S
     }
 }
 
-/// A point of the unit square in cell `index` of `count` cells of the same area, which lie in about √`count` rows.
+/// A point of the unit square in cell `index` of `count` cells of the same area, which lie in about √`count`
+/// rows.
 fn stratum(index: u32, count: u32, random: &mut Stream) -> [f64; 2] {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most 65536")]
     let rows = f64::from(count).sqrt().round().max(1.0) as u64;

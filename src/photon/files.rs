@@ -1,7 +1,7 @@
 //! Photons as files: NPY, CSV and PLY.
 //!
-//! Written as the photons come, so that a file may be larger than the memory; the number of landings is known at the end
-//! alone, and its place in the header is kept free until then.
+//! Written as the photons come, so that a file may be larger than the memory; the number of landings is known
+//! at the end alone, and its place in the header is kept free until then.
 
 use std::io::{Seek as _, SeekFrom, Write as _};
 use std::path::Path;
@@ -12,7 +12,7 @@ use crate::error::{Error, Result};
 use crate::image::write_atomically;
 use crate::scene::Scene;
 
-/// The file formats of photons, told apart by extension in any case.
+/// The file formats of photons, by extension in any case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PhotonFormat {
     /// `.npy`: a NumPy array of records, surfaces by name.
@@ -24,7 +24,7 @@ pub enum PhotonFormat {
 }
 
 impl PhotonFormat {
-    /// The format that `path` asks for.
+    /// The format by the extension of `path`.
     ///
     /// # Errors
     /// If the extension is none of the three, or missing.
@@ -48,8 +48,8 @@ impl PhotonFormat {
     }
 }
 
-/// Traces all photons of `emission` and writes their landings, in the order of [`trace_in_batches`]; `progress` gets the
-/// number of photons followed so far.
+/// Traces all photons of `emission` and writes their landings, in the order of [`trace_in_batches`];
+/// `progress` gets the number of photons followed so far.
 ///
 /// # Errors
 /// If the extension is unknown, or as [`write_atomically`].

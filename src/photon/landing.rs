@@ -3,7 +3,8 @@
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
-/// A diffuse landing of a photon (thesis, Table 2.1, the photon map's columns).
+/// A diffuse landing of a photon, also called a hit or a deposit (thesis, Table 2.1, the photon map's
+/// columns).
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Photon {

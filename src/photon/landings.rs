@@ -41,16 +41,17 @@ pub struct Tally {
 /// Where photons land, in shares; the file of `varikernel photons --stats`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Landings {
-    /// The power of all lights, linear RGB; of a far light, photons carry what goes towards the rest of the scene, and that is the emitted
-    /// power of which shares are told.
+    /// The power of all lights, linear RGB; of a far light, photons carry what goes towards the rest of the
+    /// scene, and that is the emitted power that shares refer to.
     pub emitted_flux_rgb: [f64; 3],
-    /// For k = 0, 1, 2, ...: by surface, the share of the emitted photons whose k-th diffuse landing is there. Without
-    /// Russian roulette only, a share of power as well.
+    /// For k = 0, 1, 2, ...: by surface, the share of the emitted photons whose k-th diffuse landing is
+    /// there. Without Russian roulette only, a share of power as well.
     pub landings: Vec<BTreeMap<String, f64>>,
     /// For k = 0, 1, 2, ...: the share of the emitted power that arrives at the k-th diffuse landing, before
     /// absorption, linear RGB; 0 for a colour that is not emitted.
     pub flux: Vec<[f64; 3]>,
-    /// The share of the emitted power that reflection would have sent on after the last landing that was asked for, linear RGB.
+    /// The share of the emitted power that reflection would have sent on after the last landing that was
+    /// asked for, linear RGB.
     pub cut_off: [f64; 3],
 }
 
@@ -110,8 +111,9 @@ impl Tally {
         self.emitted
     }
 
-    /// Power that reflection would have sent on after the last landing that was asked for, linear RGB: light that is missing. The sum
-    /// of the light that it would have brought is larger, as each further landing brings it again.
+    /// Power that reflection would have sent on after the last landing that was asked for, linear RGB: light
+    /// that is missing. The sum of the light that it would have brought is larger, as each further landing
+    /// brings it again.
     #[must_use]
     pub fn power_cut_off(&self) -> DVec3 {
         self.cut_off

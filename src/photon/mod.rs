@@ -1,4 +1,5 @@
-//! Photons: from the lights into the scene, landing after landing (thesis 2.4, 2.6.1), on the CPU; and as vertices.
+//! Photons: from the lights into the scene, landing after landing (thesis 2.4, 2.6.1), on the CPU; and as
+//! vertices.
 
 #[cfg(feature = "scene")]
 mod aim;

@@ -13,8 +13,8 @@ pub const MAX_SPECULAR: u32 = 256;
 
 /// Follows one photon to its end.
 ///
-/// It lands on diffuse surfaces alone, and every landing is kept; it goes on by Lambert's law with its power times the
-/// reflectance. Mirrors and glass pass it on without a landing.
+/// It lands on diffuse surfaces alone, and every landing is kept; it goes on by Lambert's law with its power
+/// times the reflectance. Mirrors and glass pass it on without a landing.
 pub(super) fn follow(
     scene: &Scene,
     settings: &TraceSettings,

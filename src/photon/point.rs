@@ -7,7 +7,7 @@ use glam::Vec3;
 use super::Photon;
 use crate::view::View;
 
-/// A photon as a vertex: 40 bytes, ten f32 without gaps.
+/// A photon's landing (a hit or deposit) as a vertex: 40 bytes, ten f32 without gaps.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct PhotonPoint {
@@ -17,8 +17,8 @@ pub struct PhotonPoint {
     pub normal: Vec3,
     /// Linear RGB: the photon's share of the power of all lights, so that all photons together carry it.
     pub power: Vec3,
-    /// Number of the surface, as [`SurfaceMaps`](crate::SurfaceMaps) show it: of a scene's surfaces the index plus 1; 1 for all
-    /// where a host does not number its surfaces.
+    /// Number of the surface, as [`SurfaceMaps`](crate::SurfaceMaps) show it: of a scene's surfaces the index
+    /// plus 1; 1 for all where a host does not number its surfaces.
     pub surface: f32,
 }
 
@@ -35,7 +35,8 @@ impl PhotonPoint {
     /// Components of the attributes: position, normal, power, surface.
     pub(crate) const ATTRIBUTES: [u8; 4] = [3, 3, 3, 1];
 
-    /// Whether the picture can show it: inside of the frame, on the side of its surface that faces the camera.
+    /// Whether the picture can show it: inside of the frame, on the side of its surface that faces the
+    /// camera.
     ///
     /// Others need not be uploaded.
     #[must_use]

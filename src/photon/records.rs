@@ -57,8 +57,8 @@ impl<'a> Records<'a> {
         let longest = self.longest;
         let text = format!(
             "{{'descr': [('position', '<f4', (3,)), ('incoming', '<f4', (3,)), ('power', '<f4', (3,)), \
-             ('normal', '<f4', (3,)), ('bounce', '<u4'), ('surface', '<U{longest}'), ('through_glass', '|b1')], \
-             'fortran_order': False, 'shape': ({landings},), }}"
+             ('normal', '<f4', (3,)), ('bounce', '<u4'), ('surface', '<U{longest}'), ('through_glass', \
+             '|b1')], 'fortran_order': False, 'shape': ({landings},), }}"
         );
         // Room for the longest number, and the data begins at a multiple of 64 bytes.
         let digits = landings.to_string().len();

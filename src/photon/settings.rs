@@ -13,8 +13,8 @@ pub struct TraceSettings {
     pub bounces: u32,
     /// The same seed gives the same photons.
     pub seed: u64,
-    /// Whether a photon ends at a landing by chance, in proportion to what the surface absorbs, instead of going on with
-    /// less power. The mean is the same.
+    /// Whether a photon ends at a landing by chance, in proportion to what the surface absorbs, instead of
+    /// going on with less power. The mean is the same.
     pub russian_roulette: bool,
 }
 
@@ -35,10 +35,10 @@ impl TraceSettings {
             Err(Error::Setting { name, value: "0".to_owned(), reason: reason.to_owned() })
         };
         if self.photons == 0 {
-            return refuse("photons", "no photon means no light; ask for at least 1");
+            return refuse("photons", "give at least 1");
         }
         if self.bounces == 0 {
-            return refuse("bounces", "the first landing is one; ask for at least 1");
+            return refuse("bounces", "give at least 1");
         }
         Ok(())
     }

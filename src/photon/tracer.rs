@@ -1,7 +1,7 @@
 //! Many photons at once, on all threads of the current rayon pool.
 //!
-//! Each photon has random numbers of its own, and parts are put together in the order of the photons' numbers, so that
-//! the result is the same, bit for bit, whatever the number of threads.
+//! Each photon has random numbers of its own, and parts are put together in the order of the photons'
+//! numbers, so that the result is the same, bit for bit, whatever the number of threads.
 
 use rayon::prelude::*;
 
@@ -21,9 +21,9 @@ struct Part {
     tally: Tally,
 }
 
-/// Follows all photons of `emission`, and gives their landings to `each` in the order of their numbers, as they come:
-/// the slices are those of consecutive photons, each photon's landings in the order of its way. The number is that of the
-/// photons followed so far.
+/// Follows all photons of `emission`, and gives their landings to `each` in the order of their numbers, as
+/// they come: the slices are those of consecutive photons, each photon's landings in the order of its way.
+/// The number is that of the photons followed so far.
 ///
 /// # Errors
 /// Those of `each`.
@@ -77,8 +77,8 @@ pub fn trace_from(
     }))
 }
 
-/// Goes on with photons whose first surface is known, as from a bounce map (thesis 2.6.1): the same as [`trace_from`] where
-/// that is right, without casting the first ray.
+/// Goes on with photons whose first surface is known, as from a bounce map (thesis 2.6.1): the same as
+/// [`trace_from`] where that is right, without casting the first ray.
 ///
 /// # Panics
 /// If there are more than `u32::MAX` photons.

@@ -1,7 +1,9 @@
-//! The same in plain Rust, slow and obvious, without OpenGL: the definition that everything else is compared with.
+//! The same in plain Rust, slow and obvious, without OpenGL: the definition that everything else is compared
+//! with.
 //!
-//! [`radius`] is the definition; [`radius_by_table`] gives the same for large maps. [`pyramid`], [`naive_mipmap`] and
-//! [`as_printed`] mirror what those methods do step by step, so that fetches can be counted and faults predicted.
+//! [`radius`] is the definition; [`radius_by_table`] gives the same for large maps. [`pyramid`],
+//! [`naive_mipmap`] and [`as_printed`] mirror what those methods do step by step, so that fetches can be
+//! counted and faults predicted.
 
 pub mod as_printed;
 mod definition;
@@ -19,7 +21,7 @@ use glam::UVec2;
 
 use crate::image::Image;
 
-/// What a search answers for each pixel.
+/// The result of a search for each pixel.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Radii {
     /// The radius, from 1 to MR.

@@ -1,4 +1,4 @@
-//! What the naive mipmap answers (thesis 3.3.1): not the definition.
+//! The naive mipmap's result (thesis 3.3.1), which is not the definition.
 
 use glam::UVec2;
 
@@ -6,8 +6,8 @@ use super::{Inside, Radii, Table, enough};
 use crate::image::Image;
 use crate::settings::Search;
 
-/// For each pixel, half the side of the smallest power-of-two block around it that holds enough; MR where none of
-/// half-side below MR, nor the next one, does.
+/// For each pixel, half the side of the smallest power-of-two block around it that holds enough; MR where
+/// none of half-side below MR, nor the next one, does.
 ///
 /// Level 1 has radius 1, level l has radius 2^(l-1), and the last level tried counts as MR.
 #[must_use]

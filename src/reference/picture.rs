@@ -1,6 +1,7 @@
-//! Density, splat and gather as nested loops in f64: each photon looks at each pixel (thesis 2.1, 2.6.2).
+//! Density, splat and gather as nested loops in f64: each photon is tested against each pixel (thesis 2.1,
+//! 2.6.2).
 //!
-//! The same words as in `glsl/common/surfaces.glsl`, `photon.glsl` and `kernel.glsl`, without their bounds.
+//! The same terms as in `glsl/common/surfaces.glsl`, `photon.glsl` and `kernel.glsl`, without their bounds.
 
 use std::f64::consts::PI;
 
@@ -136,7 +137,8 @@ pub fn photon_density(shown: &Shown, photons: &[PhotonPoint]) -> Image<u32> {
     counts
 }
 
-/// Irradiance, where each photon spreads its power over what its kernel covers with the radius of its own pixel.
+/// Irradiance, where each photon spreads its power over what its kernel covers with the radius of its own
+/// pixel.
 #[must_use]
 pub fn splat(shown: &Shown, photons: &[PhotonPoint], radius: &Image<u32>, kernel: Kernel) -> Image<[f64; 3]> {
     let mut irradiance = Image::filled(shown.position.size(), [0.0; 3]);
@@ -162,7 +164,8 @@ pub fn splat(shown: &Shown, photons: &[PhotonPoint], radius: &Image<u32>, kernel
     irradiance
 }
 
-/// Irradiance, where each pixel gathers the power of the pixels that its kernel covers, and how many photons it found.
+/// Irradiance, where each pixel gathers the power of the pixels that its kernel covers, and how many photons
+/// it found.
 #[must_use]
 pub fn gather(
     shown: &Shown,

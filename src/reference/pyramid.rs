@@ -55,7 +55,8 @@ fn matching_level(area: Area, top_level: u32) -> u32 {
     (0..=top_level).rev().find(fits).unwrap_or(0)
 }
 
-/// Splits what is left of `area` beside the block of `side` at its corner; the larger piece goes to the bottom.
+/// Splits what is left of `area` beside the block of `side` at its corner; the larger piece goes to the
+/// bottom.
 fn push_rest(stack: &mut Vec<Area>, area: Area, side: u32, split: Split, faults: Faults) {
     let Area { at, end } = area;
     let next = at + side;

@@ -44,7 +44,8 @@ impl Table {
     }
 }
 
-/// Halves the range from 1 to `max_radius`, as thesis 3.5; nothing if what is left does not hold enough either.
+/// Halves the range from 1 to `max_radius`, as thesis 3.5; nothing if what is left does not hold enough
+/// either.
 pub fn binary_search(max_radius: u32, holds_enough: impl Fn(u32) -> bool) -> Option<u32> {
     let (mut first, mut last) = (1, max_radius);
     while first < last {
@@ -60,8 +61,8 @@ pub fn binary_search(max_radius: u32, holds_enough: impl Fn(u32) -> bool) -> Opt
 
 /// Equal to [`radius`](super::radius) on every map, in O(log MR) a pixel.
 ///
-/// Both edge rules are monotone in the radius, so halving the range finds the same radius: with zero the count only
-/// grows, and with scale a box that holds n of its share at one radius does so at the next
+/// Both edge rules are monotone in the radius, so halving the range finds the same radius: with zero the
+/// count only grows, and with scale a box that holds n of its share at one radius does so at the next
 /// (`tests/reference.rs` compares them).
 #[must_use]
 pub fn radius_by_table(density: &Image<u32>, search: Search) -> Radii {

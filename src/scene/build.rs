@@ -124,8 +124,8 @@ impl Builder<'_> {
     fn light(&mut self, name: &Spanned<String>, entry: &LightEntry) -> Result<Option<Light>> {
         let field = |field: &str| format!("lights.{}.{field}", name.get_ref());
         let wrong = |problem: &str| {
-            let remedy = "give quad and radiance, or point and intensity; with a point also direction and angle_degrees, \
-                          which make it a spot";
+            let remedy = "give quad and radiance, or point and intensity; with a point also direction and \
+                          angle_degrees, which make it a spot";
             Err(self.text.error(&name.span(), &format!("lights.{}", name.get_ref()), problem, remedy))
         };
         let shape = match entry {

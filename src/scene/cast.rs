@@ -1,8 +1,8 @@
 //! The first thing that a ray meets.
 //!
-//! Trees of boxes find the candidates, and each is met in f64. A new ray starts so close to its surface that it stays on its side of the
-//! neighbours: light does not leak through the corners of a room. Of 10^7 photons with 8 landings each in the Cornell box with its open
-//! side closed, none got out.
+//! Trees of boxes find the candidates, and each is met in f64. A new ray starts so close to its surface that
+//! it stays on its side of the neighbours: light does not leak through the corners of a room. Of 10^7 photons
+//! with 8 landings each in the Cornell box with its open side closed, none got out.
 
 use glam::{DVec2, DVec3, Vec3};
 
@@ -11,7 +11,8 @@ use super::intersect::{TriangleEdges, intersect_sphere};
 use super::tree::Tree;
 use crate::view::Ray;
 
-/// How far from its surface a ray starts, as a share of the largest coordinate around it: a million times what f64 loses.
+/// How far from its surface a ray starts, as a share of the largest coordinate around it: a million times
+/// what f64 loses.
 const START_MARGIN: f64 = 1e-10;
 
 /// Where a ray meets a surface.

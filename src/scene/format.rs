@@ -1,4 +1,4 @@
-//! The scene file, field by field, as TOML has it; `assets/scenes/README.md` tells what each means.
+//! The scene file, field by field, as TOML has it; `assets/scenes/README.md` explains each.
 
 use std::collections::BTreeMap;
 

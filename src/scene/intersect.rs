@@ -6,7 +6,7 @@ use crate::view::Ray;
 
 /// How far outside a triangle still counts as inside, in barycentric coordinates.
 ///
-/// Neighbours then overlap by less than any f32 can tell, instead of leaving a gap by rounding.
+/// Neighbours then overlap by less than f32 resolves, instead of leaving a gap by rounding.
 const OVERLAP: f64 = 1e-12;
 
 /// A triangle as its first corner and the two edges from there.
@@ -62,8 +62,8 @@ impl TriangleEdges {
 
 /// Distance along the ray, more than zero, to the first place on the sphere.
 ///
-/// The smaller root is found without subtracting near equals (W. Press and others, "Numerical Recipes", 5.6), and the
-/// discriminant from the ray's closest point (E. Haines and others, "Ray Tracing Gems", 7).
+/// The smaller root is found without subtracting near equals (W. Press and others, "Numerical Recipes", 5.6),
+/// and the discriminant from the ray's closest point (E. Haines and others, "Ray Tracing Gems", 7).
 #[must_use]
 #[inline]
 pub fn intersect_sphere(ray: &Ray, centre: DVec3, radius: f64) -> Option<f64> {

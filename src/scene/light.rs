@@ -17,7 +17,8 @@ pub struct Light {
     pub shape: LightShape,
 }
 
-/// Where and how light leaves. Power is in watts when lengths are in metres; any unit will do, as only shares matter.
+/// Where and how light leaves. Power is in watts when lengths are in metres; any unit will do, as only shares
+/// matter.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LightShape {
     /// Triangles that shine by Lambert's law on their front side, where the corners run counter-clockwise.
@@ -35,8 +36,8 @@ pub enum LightShape {
     },
 }
 
-/// Triangles that shine, with what it takes to choose places on them by their power: a search in as many steps as the logarithm of
-/// their number.
+/// Triangles that shine, with what it takes to choose places on them by their power: a search in as many
+/// steps as the logarithm of their number.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AreaLight {
     triangles: Vec<[Vec3; 3]>,
@@ -57,17 +58,18 @@ pub struct LightSample {
     pub position: DVec3,
     /// Of length 1, on the side that shines.
     pub normal: DVec3,
-    /// Radiance there over the density of places there: power per solid angle along the normal of all of the light, if all of it were as
-    /// here. Linear RGB.
+    /// Radiance there over the density of places there: power per solid angle along the normal of all of the
+    /// light, if all of it were as here. Linear RGB.
     pub intensity: DVec3,
 }
 
-/// Samples along each side of a triangle that find its mean radiance: as many as it has texels there, within these limits.
+/// Samples along each side of a triangle that find its mean radiance: as many as it has texels there, within
+/// these limits.
 const MEAN_STEPS: [f64; 2] = [8.0, 256.0];
 /// Samples of all triangles of a light, more or less.
 const MEAN_SAMPLES: f64 = 4e6;
-/// Each triangle gets places, and the light power, as if its mean radiance were at least this share of that of the whole image: a bright
-/// texel that no sample of the mean met is found all the same.
+/// Each triangle gets places, and the light power, as if its mean radiance were at least this share of that
+/// of the whole image: a bright texel that no sample of the mean met is found all the same.
 const LEAST_RADIANCE: f64 = 0.05;
 
 impl AreaLight {
@@ -93,7 +95,7 @@ impl AreaLight {
         let mean = if texture.is_none() {
             DVec3::ONE
         } else if sum == DVec3::ZERO {
-            // What no sample met is at least told from what is black.
+            // A texture that no sample met is at least distinguished from a black one.
             least
         } else {
             sum / whole
@@ -180,8 +182,8 @@ impl PlacedTexture {
 }
 
 impl Light {
-    /// All power that leaves the light, linear RGB: π · area · radiance, or solid angle · intensity. With a texture, as some
-    /// samples of it say.
+    /// All power that leaves the light, linear RGB: π · area · radiance, or solid angle · intensity. With a
+    /// texture, as some samples of it say.
     #[must_use]
     pub fn flux(&self) -> DVec3 {
         match &self.shape {

@@ -34,8 +34,8 @@ impl LightPlace {
 }
 
 impl Light {
-    /// The point of a point light, or places spread over an area light by its power, one in each cell of a square grid; `number` draws
-    /// from 0 to 1, twice for each.
+    /// The point of a point light, or places spread over an area light by its power, one in each cell of a
+    /// square grid; `number` draws from 0 to 1, twice for each.
     pub(crate) fn places(&self, samples: u32, number: &mut dyn FnMut() -> f64) -> Vec<LightPlace> {
         match &self.shape {
             LightShape::Point { position, direction, half_angle, intensity } => vec![LightPlace {

@@ -35,7 +35,8 @@ pub enum Scattering {
         /// Index of refraction behind the surface over the one in front of it, where its normal points.
         index: f32,
     },
-    /// A pane that is thinner than anything else: light goes straight on, less what its two faces reflect, or is reflected.
+    /// A pane that is thinner than anything else: light goes straight on, less what its two faces reflect, or
+    /// is reflected.
     ThinDielectric {
         /// Index of refraction of the pane over that around it.
         index: f32,

@@ -1,7 +1,8 @@
-//! From a scene file to what light meets: a camera, lights, materials, triangles and spheres, and the rays cast at them.
+//! From a scene file to what light meets: a camera, lights, materials, triangles and spheres, and the rays
+//! cast at them.
 //!
-//! The format of scene files is told in `assets/scenes/README.md`. Lengths are in the file's units, colours are linear RGB,
-//! coordinates are right-handed.
+//! The format of scene files is described in `assets/scenes/README.md`. Lengths are in the file's units,
+//! colours are linear RGB, coordinates are right-handed.
 
 mod build;
 mod cast;
@@ -45,9 +46,9 @@ use source::{Files, Text};
 /// A scene, ready to be rasterised and for rays.
 #[derive(Clone)]
 pub struct Scene {
-    /// What it is, for people.
+    /// A title to show.
     pub title: String,
-    /// The unit of length, for people: `"mm"`.
+    /// The unit of length, to show: `"mm"`.
     pub units: String,
     /// Where the picture is taken from; it may be moved at any time.
     pub camera: Camera,
@@ -65,8 +66,8 @@ impl Scene {
     /// Reads a scene file and the meshes that it names.
     ///
     /// # Errors
-    /// [`Error::File`] with the line and the field: what is missing, malformed, out of range, not a number or without
-    /// area, an unknown material, a mesh that can't be read or lies outside the scene's folder.
+    /// [`Error::File`] with the line and the field: what is missing, malformed, out of range, not a number or
+    /// without area, an unknown material, a mesh that can't be read or lies outside the scene's folder.
     pub fn load(path: &Path) -> Result<Self> {
         let content = source::read(path)?;
         let content = source::text(path, &content)?;
@@ -159,7 +160,8 @@ impl Scene {
         Some(self.target.hit(&self.geometry, ray, distance, primitive))
     }
 
-    /// What the surface does with light where it was hit: the material's scattering, with textures and colours of vertices.
+    /// What the surface does with light where it was hit: the material's scattering, with textures and
+    /// colours of vertices.
     #[must_use]
     pub fn scattering(&self, hit: &Hit) -> Scattering {
         let material = &self.materials[hit.material as usize];
@@ -176,7 +178,8 @@ impl Scene {
         material.scattering.times((colour * texel).clamp(Vec3::ZERO, Vec3::ONE))
     }
 
-    /// Whether reflectances differ within a material, so that [`scattering`](Self::scattering) has to be asked at each place.
+    /// Whether reflectances differ within a material, so that [`scattering`](Self::scattering) has to be
+    /// called at each place.
     #[must_use]
     pub fn has_patterns(&self) -> bool {
         self.has_patterns
@@ -194,15 +197,16 @@ impl Scene {
         material.emission * texture.between(vertices.map(|vertex| vertex.coordinates[1]), shares)
     }
 
-    /// The corners of the triangle that was hit, and the shares of the second and third; nothing for a sphere.
+    /// The corners of the triangle that was hit, and the shares of the second and third; nothing for a
+    /// sphere.
     fn corners_around(&self, hit: &Hit) -> Option<([&Vertex; 3], DVec2)> {
         let shares = self.target.shares(hit.primitive, hit.position)?;
         let triangle = &self.geometry.triangles[hit.primitive as usize];
         Some((triangle.vertices.map(|vertex| &self.geometry.vertices[vertex as usize]), shares))
     }
 
-    /// Where a ray starts that leaves a surface at `position` on the side to which `normal` points: so close to it that
-    /// it does not pass a neighbour, and not so close that it meets the surface again.
+    /// Where a ray starts that leaves a surface at `position` on the side to which `normal` points: so close
+    /// to it that it does not pass a neighbour, and not so close that it meets the surface again.
     #[must_use]
     pub fn start(&self, position: DVec3, normal: DVec3) -> DVec3 {
         self.target.start(position, normal)

@@ -14,7 +14,7 @@ macro_rules! asset {
     };
 }
 
-/// All of them, in the order in which they are told.
+/// All of them, in the order in which they are listed.
 pub(super) const SHIPPED: [Shipped; 5] = [
     Shipped {
         name: "cornell-glass",

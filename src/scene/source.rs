@@ -1,4 +1,4 @@
-//! A scene's text, the files that it names, and errors that tell the line.
+//! A scene's text, the files that it names, and errors with line numbers.
 
 use std::fs;
 use std::io::Read as _;
@@ -49,8 +49,8 @@ impl Files {
     }
 }
 
-/// A path inside the scene's folder in its shortest form: `./a`, `a/./b`, `a//b` and `a/../b` are ways to write `a`, `a/b` and
-/// `b`, and `a\\b`, as Windows writes it, is `a/b`.
+/// A path inside the scene's folder in its shortest form: `./a`, `a/./b`, `a//b` and `a/../b` are ways to
+/// write `a`, `a/b` and `b`, and `a\\b`, as Windows writes it, is `a/b`.
 ///
 /// # Errors
 /// If it leaves the folder or names nothing in it.
@@ -75,8 +75,8 @@ pub(super) fn normal_form(path: &str) -> Result<String, String> {
     if normal.is_empty() { Err("the path names no file".to_owned()) } else { Ok(normal) }
 }
 
-/// The path, in its normal form, of a file that another names, whose path is in its normal form: it counts from that one's
-/// folder.
+/// The path, in its normal form, of a file that another names, whose path is in its normal form: it counts
+/// from that one's folder.
 ///
 /// # Errors
 /// If it leaves the scene's folder or names nothing in it.
@@ -128,7 +128,7 @@ pub(super) fn read(path: &Path) -> Result<Vec<u8>> {
     Ok(content)
 }
 
-/// A scene file's text, to tell places in it.
+/// A scene file's text, to locate errors in it.
 pub(super) struct Text<'a> {
     pub(super) path: &'a Path,
     pub(super) content: &'a str,
@@ -152,7 +152,7 @@ impl Text<'_> {
         1 + self.content[..span.start].matches('\n').count()
     }
 
-    /// What TOML has to say on a text that is not a scene.
+    /// TOML's error for a text that is not a scene.
     pub(super) fn not_a_scene(&self, error: &toml::de::Error) -> Error {
         let message = error.message().trim().replace('\n', ", ");
         let remedy = "see the format of scene files in assets/scenes/README.md";

@@ -1,4 +1,4 @@
-//! Images on surfaces: what a mesh file's textures say at a point of the surface.
+//! Images on surfaces: the values of a mesh file's textures at a point of the surface.
 
 use std::fmt;
 use std::sync::LazyLock;
@@ -17,8 +17,8 @@ pub enum Wrap {
     Clamp,
 }
 
-/// An image of colours, sRGB with 8 bits a channel, with coordinates as in glTF: (0, 0) is the outer corner of the first texel of the
-/// first row, (1, 1) that of the last one of the last row.
+/// An image of colours, sRGB with 8 bits a channel, with coordinates as in glTF: (0, 0) is the outer corner
+/// of the first texel of the first row, (1, 1) that of the last one of the last row.
 #[derive(Clone, PartialEq)]
 pub struct Texture {
     name: String,

@@ -1,8 +1,9 @@
 //! Trees of boxes in f32 (obvhs), which find what a ray may meet.
 //!
-//! The boxes are wider than what they hold by more than f32 loses, so that no candidate is missed. What f32 loses grows with the largest
-//! coordinate; so a ground or a stray thing that is a thousand times as large or as far away as most of the scene gets a tree of its
-//! own, and does not make the boxes of all the others coarse.
+//! The boxes are wider than what they hold by more than f32 loses, so that no candidate is missed. What f32
+//! loses grows with the largest coordinate; so a ground or a stray thing that is a thousand times as large or
+//! as far away as most of the scene gets a tree of its own, and does not make the boxes of all the others
+//! coarse.
 
 use std::time::Duration;
 
@@ -73,7 +74,7 @@ impl Tree {
         place.distance_squared(self.centre) <= 1.001 * self.extent * self.extent
     }
 
-    /// Distance along the ray, less than `limit`, and the primitive; `meet` tells the distance to one.
+    /// Distance along the ray, less than `limit`, and the primitive; `meet` gives the distance to one.
     pub(super) fn nearest(
         &self,
         ray: &Ray,
@@ -107,8 +108,8 @@ impl Tree {
     }
 }
 
-/// A number from 0 to 1 of a primitive's own: without it the builder, which pairs boxes that are alike, would make a chain of thousands
-/// that are the same.
+/// A number from 0 to 1 of a primitive's own: without it the builder, which pairs boxes that are alike, would
+/// make a chain of thousands that are the same.
 fn unlike(number: u32) -> f32 {
     #[expect(clippy::cast_precision_loss, reason = "24 bits")]
     let share = (number.wrapping_mul(0x9e37_79b9) >> 8) as f32;

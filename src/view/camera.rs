@@ -14,7 +14,8 @@ pub struct Camera {
     pub direction: Vec3,
     /// What is up in the picture; any length but zero, not along `direction`.
     pub up: Vec3,
-    /// The angle between the lower and the upper edge of the picture, in degrees, more than 0 and less than 180.
+    /// The angle between the lower and the upper edge of the picture, in degrees, more than 0 and less than
+    /// 180.
     pub vertical_fov_degrees: f32,
 }
 
@@ -36,8 +37,8 @@ impl Camera {
 
     /// Distances that hold all of a box between its corners `min` and `max`, for [`Camera::projection`].
     ///
-    /// Where the camera is inside the box or close to it, `near` is 10^-12 of `far`: enough for a projection, and for depth that a shader
-    /// writes by distance, but too little for an ordinary depth buffer.
+    /// Where the camera is inside the box or close to it, `near` is 10^-12 of `far`: enough for a projection,
+    /// and for depth that a shader writes by distance, but too little for an ordinary depth buffer.
     #[must_use]
     pub fn depth_range(&self, min: Vec3, max: Vec3) -> (f32, f32) {
         let direction = self.direction.normalize();

@@ -18,15 +18,16 @@ pub struct View {
     position: Vec3,
     direction: Vec3,
     pixel_side: f32,
-    /// The ray of a pixel goes along `to_corner + x * to_right + y * to_next_row`, for the pixel's middle in pixels.
+    /// The ray of a pixel goes along `to_corner + x * to_right + y * to_next_row`, for the pixel's middle in
+    /// pixels.
     to_corner: DVec3,
     to_right: DVec3,
     to_next_row: DVec3,
 }
 
 impl View {
-    /// What a camera sees between the distances `near` and `far` along its direction, in a picture of `size`; row 0 is the
-    /// top of the picture.
+    /// What a camera sees between the distances `near` and `far` along its direction, in a picture of `size`;
+    /// row 0 is the top of the picture.
     #[must_use]
     pub fn new(camera: &Camera, (near, far): (f32, f32), size: UVec2) -> Self {
         let [width, height] = size.as_vec2().to_array();
@@ -47,15 +48,16 @@ impl View {
         Self { size, to_clip, position, direction, pixel_side, to_corner, to_right, to_next_row }
     }
 
-    /// A host's camera by its matrices, column by column as for glUniformMatrix4fv: `view` from scene units to view space,
-    /// where the camera looks along -z, and `projection` from there to OpenGL's clip space.
+    /// A host's camera by its matrices, column by column as for glUniformMatrix4fv: `view` from scene units
+    /// to view space, where the camera looks along -z, and `projection` from there to OpenGL's clip space.
     ///
-    /// Row 0 of the maps is what the host draws at the bottom of its viewport, unless its projection is flipped. A
-    /// projection may be off centre, as one that is shifted by parts of a pixel, and its depth may be reversed or infinite.
+    /// Row 0 of the maps is what the host draws at the bottom of its viewport, unless its projection is
+    /// flipped. A projection may be off centre, as one that is shifted by parts of a pixel, and its depth may
+    /// be reversed or infinite.
     ///
     /// # Errors
-    /// [`Error::Setting`] unless `view` only turns and moves, `projection` is a perspective one along z, and a pixel is
-    /// as wide as it is tall (to a thousandth).
+    /// [`Error::Setting`] unless `view` only turns and moves, `projection` is a perspective one along z, and
+    /// a pixel is as wide as it is tall (to a thousandth).
     pub fn from_matrices(view: Mat4, projection: Mat4, size: UVec2) -> Result<Self> {
         let refuse = |name, matrix: Mat4, reason: &str| {
             Err(Error::Setting { name, value: matrix.to_string(), reason: reason.to_owned() })
@@ -145,7 +147,8 @@ impl View {
         self.pixel_side
     }
 
-    /// From the pinhole to the picture's corner at depth 1, where column 0 and row 0 begin, and to the next column and row.
+    /// From the pinhole to the picture's corner at depth 1, where column 0 and row 0 begin, and to the next
+    /// column and row.
     #[cfg(feature = "scene")]
     pub(crate) fn rays(&self) -> [Vec3; 3] {
         [self.to_corner, self.to_right, self.to_next_row].map(DVec3::as_vec3)

@@ -32,8 +32,8 @@ fn assert_same_lines(committed: &str, generated: &str) {
     let differs = committed.lines().zip(generated.lines()).position(|(old, new)| old != new);
     assert!(
         committed == generated,
-        "include/varikernel.h is not what src/capi says, from line {} on; update it with: VARIKERNEL_UPDATE=1 cargo \
-         test --test capi header",
+        "include/varikernel.h is not what src/capi says, from line {} on; update it with: \
+         VARIKERNEL_UPDATE=1 cargo test --test capi header",
         differs.map_or_else(|| "the last".to_owned(), |line| (line + 1).to_string())
     );
 }

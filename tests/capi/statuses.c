@@ -57,7 +57,7 @@ static void contexts(const headless *host) {
     EXPECT(varikernel_context_create(headless_loader, NULL, 0, NULL), VARIKERNEL_STATUS_INVALID_ARGUMENT, "context is null");
     EXPECT(varikernel_context_create(knows_nothing, NULL, 0, &none), VARIKERNEL_STATUS_NO_CONTEXT, "glGetString");
     EXPECT(varikernel_context_create(headless_loader, NULL, 2, &none), VARIKERNEL_STATUS_SETTING, "state_policy");
-    /* A loader that breaks its word is a panic in the library, which ends at the boundary. */
+    /* A loader that breaks its contract is a panic in the library, which ends at the boundary. */
     EXPECT(varikernel_context_create(knows_one_command, NULL, 0, &none), VARIKERNEL_STATUS_INTERNAL, "internal error: ");
     EXPECT_TRUE(headless_make_current(host, 0));
     EXPECT(varikernel_context_create(headless_loader, NULL, VARIKERNEL_STATE_RESTORE, &none), VARIKERNEL_STATUS_NO_CONTEXT, "current");

@@ -1,4 +1,5 @@
-//! OSMesa, which systems with Mesa 25.1 or newer do not offer: what only it can show is counted as absent there, by name.
+//! OSMesa, which systems with Mesa 25.1 or newer do not offer: tests that need it are reported as absent
+//! there, by name.
 
 use std::collections::BTreeSet;
 use std::io::{self, Write as _};
@@ -12,8 +13,9 @@ use varikernel::context::{self, DeviceChoice};
 /// The tests that found it absent in this run.
 static ABSENT: Mutex<BTreeSet<String>> = Mutex::new(BTreeSet::new());
 
-/// Whether OSMesa is here. Where it can't be had, the test that asks says so by name, past the harness, which keeps what tests
-/// print; where its package is offered (`.ci/install-gl` installs it), the test fails.
+/// Whether OSMesa is here. Where it can't be had, the name of the test that needs it is printed past the
+/// harness, which captures the output of tests; where its package is offered (`.ci/install-gl` installs it),
+/// the test fails.
 #[track_caller]
 pub(crate) fn osmesa_is_here() -> bool {
     let (candidates, _) = context::candidates();
@@ -35,7 +37,7 @@ pub(crate) fn osmesa_is_here() -> bool {
     false
 }
 
-/// Whether this system's packages have it, as `.ci/install-gl` asks; without apt, nobody offers it.
+/// Whether this system's packages have it, as `.ci/install-gl` asks apt; without apt, it is absent.
 fn is_offered() -> bool {
     can_install("libosmesa6")
 }

@@ -1,5 +1,6 @@
-//! Many contexts: a thousand one after another and eight at once, each with a radius map that is the definition's. In a process
-//! of their own, one test at a time, so that memory and open files can be told.
+//! Many contexts: a thousand one after another and eight at once, each with a radius map that is the
+//! definition's. In a process of their own, one test at a time, so that memory and open files can be
+//! measured.
 
 #![expect(clippy::unwrap_used, reason = "in the helpers of tests too, a panic is the report")]
 
@@ -37,7 +38,7 @@ fn is_exact(gl: &Gl, number: u32, method: Method) -> bool {
     found == reference::radius(&density, search).radius
 }
 
-/// Resident MiB and open files of this process; neither is told outside of Linux.
+/// Resident MiB and open files of this process; neither is known outside of Linux.
 fn held() -> Option<(u64, usize)> {
     let status = fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;
@@ -71,7 +72,7 @@ fn eight_at_once(choice: &DeviceChoice) {
                 let barrier = &barrier;
                 scope.spawn(move || {
                     let gl = open(choice);
-                    // Nobody begins before all contexts are open.
+                    // None begins before all contexts are open.
                     barrier.wait();
                     (0..10).all(|turn| {
                         let method = [Method::SummedAreaTable, Method::BruteForce, Method::Pyramid][turn % 3];

@@ -219,7 +219,8 @@ fn a_block_that_occurs_twice_is_refused() {
 
 #[test]
 fn a_block_that_is_missing_is_refused() {
-    // Of two layers with three blocks of 12 + 16 bytes each, the first block says that it is of the other layer.
+    // Of two layers with three blocks of 12 + 16 bytes each, the first block says that it is of the other
+    // layer.
     let encoding = Encoding { compression: Compression::Uncompressed, ..LINES };
     let channel = ("n", floats(1.0));
     let mut bytes =

@@ -65,7 +65,7 @@ fn counts_come_back_whatever_is_beside_them() {
             let beside = beside_a_picture(compression, blocks);
             assert_eq!(read_bytes("a.exr", &beside, &options).unwrap(), counts(), "{compression}");
             let lossy = ReadOptions { channel: Some("R"), ..ReadOptions::default() };
-            assert_refused(read_bytes("a.exr", &beside, &lossy), &["F16 samples is lossy", "ZIP"]);
+            assert_refused(read_bytes("a.exr", &beside, &lossy), &["f16 samples is lossy", "ZIP"]);
         }
     }
 }
@@ -78,7 +78,7 @@ fn f32_is_stored_as_it_is_by_b44_alone() {
         if let Compression::B44 | Compression::B44A = compression {
             assert_eq!(found.unwrap().at(66, 40), 67 * 41 - 1);
         } else {
-            assert_refused(found, &["F32 samples is lossy"]);
+            assert_refused(found, &["f32 samples is lossy"]);
         }
     }
 }
@@ -109,7 +109,8 @@ fn damage_never_panics_nor_takes_all_memory() {
 #[test]
 fn claims_out_of_proportion_are_refused() {
     let bytes = encoded(Compression::DWAA(None), Blocks::ScanLines, vec![("photons", whole())]);
-    // A chunk begins with its row and length, and then eleven counters: version 2, and the bytes of 67 x 32 counts.
+    // A chunk begins with its row and length, and then eleven counters: version 2, and the bytes of 67 x 32
+    // counts.
     let begin = [2_u64.to_le_bytes(), (67 * 32 * 4_u64).to_le_bytes()].concat();
     let chunk = bytes.windows(16).position(|window| window == begin).unwrap();
     for counter in [1, 6, 7, 8, 9] {

@@ -76,7 +76,7 @@ fn numbers_need_not_be_counts() {
     let values = [0.0_f32, f32::NAN].map(f32::to_le_bytes).concat();
     assert_refused(
         mask_of("a.npy", &array("<f4", "(1, 2)", &values)),
-        &["(1, 0) is NaN", "1 of 2 pixels say neither yes nor no", "give 0 where no radius is needed"],
+        &["(1, 0) is NaN", "1 of 2 pixels are not numbers", "give 0 where no radius is needed"],
     );
 }
 

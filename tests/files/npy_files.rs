@@ -31,7 +31,8 @@ fn every_dtype_in_both_byte_orders() {
             assert_eq!(read("a.npy", &array(concat!(">", $name), "(2, 3)", &big)).unwrap(), expected());
         )*};
     }
-    samples!([1, 0, 100, 7, 2, 3], "u1" u8, "u2" u16, "u4" u32, "u8" u64, "i1" i8, "i2" i16, "i4" i32, "i8" i64);
+    samples!([1, 0, 100, 7, 2, 3], "u1" u8, "u2" u16, "u4" u32, "u8" u64);
+    samples!([1, 0, 100, 7, 2, 3], "i1" i8, "i2" i16, "i4" i32, "i8" i64);
     samples!([1., 0., 100., 7., 2., 3.], "f4" f32, "f8" f64);
     // Halves by hand: 1 is 2^0, 100 is 1.5625 * 2^6, 7 is 1.75 * 2^2, 2 is 2^1, 3 is 1.5 * 2^1.
     let halves = [0x3c00_u16, 0, 0x5640, 0x4700, 0x4000, 0x4200];

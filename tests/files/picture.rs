@@ -1,4 +1,4 @@
-//! Pictures for people: their size, their colours, and that text is there and not cut.
+//! Pictures of maps: their size, their colours, and that text is there and not cut.
 
 use glam::UVec2;
 use image::RgbImage;

@@ -27,7 +27,8 @@ fn stored(bytes: &[u8]) -> Vec<u8> {
     [&[0x78, 1, 1], length.to_le_bytes().as_slice(), &(!length).to_le_bytes(), bytes, &checksum].concat()
 }
 
-/// A PNG of `size` with `bits` and colour type; each row begins with its filter, 0. `extra` comes before the pixels.
+/// A PNG of `size` with `bits` and colour type; each row begins with its filter, 0. `extra` comes before the
+/// pixels.
 pub(crate) fn png(size: (u32, u32), bits: u8, colours: u8, rows: &[u8], extra: &[u8]) -> Vec<u8> {
     let header = [size.0.to_be_bytes().as_slice(), &size.1.to_be_bytes(), &[bits, colours, 0, 0, 0]].concat();
     [
@@ -98,7 +99,7 @@ fn what_follows_the_end_is_not_read() {
     for tail in [b"\0".as_slice(), b"more", "long".repeat(20_000).as_bytes(), &chunk(*b"IDAT", &[0; 40])] {
         assert_eq!(read("a.png", &[&whole, tail].concat()).unwrap(), two);
     }
-    // A chunk that no reader knows may come before the end, and be of any length.
+    // An unknown chunk may come before the end, and be of any length.
     let note = chunk(*b"teXt", "long".repeat(5000).as_bytes());
     assert_eq!(read("a.png", &png((2, 1), 8, GREY, &[0, 3, 255], &note)).unwrap(), two);
 }

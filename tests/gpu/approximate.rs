@@ -1,4 +1,4 @@
-//! The two methods that do not answer the question exactly, and what can be said of their error.
+//! The two methods that do not answer the question exactly, and bounds of their error.
 
 use glam::UVec2;
 use varikernel::image::Difference;
@@ -7,8 +7,8 @@ use varikernel::{Image, reference};
 
 use crate::support::{assert_same, each, egl, on_gpu, random_map, search, sparse_map};
 
-/// Figures 3.2 to 3.4: 9 photons within radius 1 and 41 within radius 2 of the star at (3, 3), whose own quadrant is
-/// thin; 25 are needed.
+/// Figures 3.2 to 3.4: 9 photons within radius 1 and 41 within radius 2 of the star at (3, 3), whose own
+/// quadrant is thin; 25 are needed.
 fn figure_3_3() -> Image<u32> {
     let rows: [[u32; 8]; 8] = [
         [0, 0, 0, 0, 0, 0, 0, 0],

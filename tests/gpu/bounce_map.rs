@@ -31,7 +31,7 @@ fn maps_tell_the_primitive_that_a_ray_meets() {
             let is_wrong = |hit: &&FirstHit| {
                 let ray = ray_of(hit);
                 let met = scene.cast(&ray).map_or(u32::MAX, |hit| hit.primitive);
-                // Where the map is wrong and the ray misses what it tells, the ray decides.
+                // Where the map is wrong and the ray misses its primitive, the ray decides.
                 met != hit.primitive && scene.cast_at(&ray, hit.primitive).is_some()
             };
             hits.iter().step_by(4).filter(is_wrong).count()
@@ -44,7 +44,8 @@ fn maps_tell_the_primitive_that_a_ray_meets() {
     }
 }
 
-/// How many standard errors the shares of two runs are apart at most, beside a thousandth for the number of places.
+/// How many standard errors the shares of two runs are apart at most, beside a thousandth for the number of
+/// places.
 fn worst(found: &Landings, expected: &Landings) -> f64 {
     let mut worst = 0.0_f64;
     for (found, expected) in found.landings.iter().zip(&expected.landings) {

@@ -1,5 +1,5 @@
-//! Every command of OpenGL that is called, counted by its name: the loader hands out a trampoline for each, which adds one
-//! and jumps to the command, whatever its arguments.
+//! Every command of OpenGL that is called, counted by its name: the loader hands out a trampoline for each,
+//! which adds one and jumps to the command, whatever its arguments.
 
 #![expect(unsafe_code, reason = "commands are wrapped to count them")]
 
@@ -58,7 +58,8 @@ pub(crate) fn counted(name: &CStr, address: *const c_void) -> *const c_void {
     unsafe { (varikernel_trampolines as *const c_void).byte_add(index * TRAMPOLINE_BYTES) }
 }
 
-/// Calls since a moment, by all contexts that were opened through [`counted`]; others wait until it is dropped.
+/// Calls since a moment, by all contexts that were opened through [`counted`]; others wait until it is
+/// dropped.
 pub(crate) struct Calls {
     _alone: MutexGuard<'static, ()>,
     before: Vec<u64>,

@@ -135,7 +135,8 @@ fn variations_and_totals_past_32_bits_are_certified() {
         ..Settings::default()
     };
     let in_16_bits = Settings { search: search(100, 5, Edges::Scale), storage: Storage::U16, ..usual };
-    // With n of 25, the larger boxes of a bracketed search fit, since counts are clamped: the table is that of clamped ones.
+    // With n of 25, the larger boxes of a bracketed search fit, since counts are clamped: the table is that
+    // of clamped ones.
     let bracketed = Search { order: Order::Bracketed, min_photons: 25, ..usual.search };
     for settings in [
         usual,

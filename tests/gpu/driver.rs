@@ -1,4 +1,4 @@
-//! A driver that counts its objects and fails when it is told to: commands wrapped on their way through the loader.
+//! A driver that counts its objects and fails on demand: commands wrapped on their way through the loader.
 //!
 //! All is of the thread, as a context is.
 
@@ -48,7 +48,7 @@ pub(crate) fn live() -> [i64; 8] {
 /// # Safety
 /// As `Candidate::open_through`.
 pub(crate) unsafe fn open_through(mut command: impl FnMut(&CStr, *const c_void) -> *const c_void) -> Gl {
-    // SAFETY: each wrapper calls the command that it stands for; the caller vouches for `command`.
+    // SAFETY: each wrapper calls the command that it stands for; the caller guarantees for `command`.
     unsafe {
         working_candidates()[0].open_through(|name, address| {
             let wrapped = wrappers::of(name).map_or(address, |wrapper| {

@@ -280,7 +280,7 @@ fn sums_without_the_mean_are_never_taken_for_exact_though_small_ones_are() {
             let bracketed = Settings { search: Search { order: Order::Bracketed, ..search }, ..waived };
             assert_same(&on_gpu(&gl, &map, bracketed), &expected, &format!("{bracketed:?}"));
 
-            // Photons that are added bring a mean of their own.
+            // Photons that are added have a mean of their own.
             let upload = |map| DensityMap::upload(&gl, map, CountBounds::of(map, search)).unwrap();
             let (first, added) = (upload(&map), upload(&more));
             let mut pipeline = RadiusPipeline::new(&gl, map.size(), first.format(), waived).unwrap();

@@ -1,5 +1,5 @@
-//! A frame reads nothing back and waits for nothing; under `StatePolicy::Defaults` it asks the driver for nothing either.
-//! Commands are counted on their way through the loader.
+//! A frame reads nothing back and waits for nothing; under `StatePolicy::Defaults` it queries nothing from
+//! the driver either. Commands are counted on their way through the loader.
 
 #![expect(unsafe_code, reason = "commands are wrapped to count them")]
 #![expect(
@@ -84,7 +84,8 @@ macro_rules! logged {
                 let real: extern "system" fn($($kind),*) -> $answer = unsafe { std::mem::transmute(real) };
                 let answer = real($($argument),*);
                 let arguments = vec![$($argument as u64),*];
-                LOG.with_borrow_mut(|log| log.push(Call { name: stringify!($name), arguments, answer: answer.logged() }));
+                let call = Call { name: stringify!($name), arguments, answer: answer.logged() };
+                LOG.with_borrow_mut(|log| log.push(call));
                 answer
             })*
 
@@ -127,17 +128,20 @@ logged! {
     glGetShaderInfoLog(name: u32, size: i32, length: *mut i32, log: *mut u8) -> ();
     glGetProgramiv(name: u32, state: u32, value: *mut i32) -> ();
     glGetProgramInfoLog(name: u32, size: i32, length: *mut i32, log: *mut u8) -> ();
-    glGetActiveUniform(program: u32, index: u32, room: i32, length: *mut i32, size: *mut i32, kind: *mut u32, name: *mut u8) -> ();
+    glGetActiveUniform(
+        program: u32, index: u32, room: i32, length: *mut i32, size: *mut i32, kind: *mut u32, name: *mut u8
+    ) -> ();
     glGetUniformLocation(program: u32, name: *const u8) -> i32;
 }
 
-/// Is it a command that asks the driver for something, other than errors?
+/// Is it a command that queries the driver for something other than errors?
 fn is_question(name: &str) -> bool {
     let asks = ["glGet", "glIs", "glCheck"].iter().any(|start| name.starts_with(start));
     asks && !["glGetError", "glGetBufferSubData"].contains(&name)
 }
 
-/// The wrapper of a command, or the command; null where it would go uncounted, so that a call to it is seen at once.
+/// The wrapper of a command, or the command; null where it would go uncounted, so that a call to it is seen
+/// at once.
 fn counted(name: &CStr, real: *const c_void) -> *const c_void {
     let name = name.to_str().unwrap();
     match wrappers::of(name) {
@@ -266,12 +270,12 @@ fn adaptive_pipeline(gl: &Gl) {
     for frame in 0..8 {
         let order = pipeline.choice().settings.search.order;
         let log = log_of(|| pipeline.update(&Frame::new(&map)).unwrap().texture());
-        // The first frames may compile what the census asks for.
+        // The first frames may compile what the census calls for.
         if order == pipeline.choice().settings.search.order {
             check(gl, &format!("adaptive frame {frame}"), &log);
             fetched += log.iter().filter(|call| call.name == "glGetBufferSubData").count();
         }
-        // The GPU gets done, so that the next frame finds a census.
+        // The GPU finishes, so that the next frame finds a census.
         // SAFETY: the context is current.
         unsafe { gl.glow().finish() };
     }
@@ -324,7 +328,8 @@ fn planted_waits_and_questions_are_seen() {
     let log = log_of(|| pipeline.certify(&map).unwrap());
     assert_eq!(names(&log), ["glGetQueryObjectui64v"; 2]);
     let mut texel = [0_u8; 4];
-    // SAFETY: the context is current; a framebuffer of one texel is read; no buffer is bound where there is a slice.
+    // SAFETY: the context is current; a framebuffer of one texel is read; no buffer is bound where there is a
+    // slice.
     let log = log_of(|| unsafe {
         let framebuffer = glow.create_framebuffer().unwrap();
         glow.bind_framebuffer(glow::FRAMEBUFFER, Some(framebuffer));
@@ -335,7 +340,7 @@ fn planted_waits_and_questions_are_seen() {
         let buffer = glow.create_buffer().unwrap();
         glow.bind_buffer(glow::PIXEL_PACK_BUFFER, Some(buffer));
         glow.buffer_data_size(glow::PIXEL_PACK_BUFFER, 4, glow::STREAM_READ);
-        // This is how it may be done, but not fetched before a fence says so.
+        // This is allowed, but not before a fence has signalled.
         let pixels = glow::PixelPackData::BufferOffset(0);
         glow.read_pixels(0, 0, 1, 1, glow::RED_INTEGER, glow::UNSIGNED_INT, pixels);
         glow.get_buffer_sub_data(glow::PIXEL_PACK_BUFFER, 0, &mut texel);

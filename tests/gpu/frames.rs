@@ -1,4 +1,5 @@
-//! Frames that follow each other: masks, changes in a rectangle, added photons. Every radius equals the definition's.
+//! Frames that follow each other: masks, changes in a rectangle, added photons. Every radius equals the
+//! definition's.
 
 #![expect(unsafe_code, reason = "a host waits for the GPU itself")]
 
@@ -99,7 +100,8 @@ fn a_mask_is_asked_for_exactly_where_the_settings_say_so() {
     pipeline(true).update(&Frame { mask: Some(&mask), ..Frame::new(&map) }).unwrap();
 }
 
-/// A depth-stencil texture in which the left half has a receiver: depth 0.5 and stencil 5; elsewhere the far plane and 1.
+/// A depth-stencil texture in which the left half has a receiver: depth 0.5 and stencil 5; elsewhere the far
+/// plane and 1.
 pub(crate) fn depth_and_stencil(gl: &Gl, size: UVec2) -> glow::Texture {
     let texel = |x: u32| {
         let depth = if x < size.x / 2 { 0x0080_0000_u32 } else { 0x00FF_FFFF };
@@ -233,7 +235,7 @@ fn what_the_host_does_not_tell_is_not_seen() {
         let radii = pipeline.update(&Frame { changed, ..Frame::new(&map) }).unwrap();
         assert_same(&read(radii), &old, "a frame that is said to have no change there");
     }
-    // The same frame, told rightly.
+    // The same frame, declared rightly.
     let changed = Changed::Rectangle { first: UVec2::new(10, 10), size: UVec2::ONE };
     let radii = pipeline.update(&Frame { changed, ..Frame::new(&map) }).unwrap();
     assert_same(&read(radii), &reference::radius_by_table(&after, question), "the change told");
@@ -302,7 +304,7 @@ fn the_adaptive_pipeline_follows_the_photons_and_stays_exact() {
     }
 }
 
-/// Photons keep coming while the planner changes its mind: none of those before may be lost.
+/// Photons keep coming while the planner changes its choice: none of those before may be lost.
 #[test]
 fn photons_added_to_an_adaptive_pipeline_stay_when_the_order_changes() {
     let gl = egl();

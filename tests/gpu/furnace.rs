@@ -1,5 +1,5 @@
-//! Surfaces that shine and reflect. In a closed room whose walls emit E and reflect the share ρ, radiance is E / (1 - ρ) everywhere and
-//! in every direction, whatever the room's shape: the furnace test of renderers.
+//! Surfaces that shine and reflect. In a closed room whose walls emit E and reflect the share ρ, radiance is
+//! E / (1 - ρ) everywhere and in every direction, whatever the room's shape: the furnace test of renderers.
 
 use std::sync::Arc;
 
@@ -44,7 +44,8 @@ fn room(material: &str) -> Scene {
 
 fn furnace(reflectance: f64) -> Scene {
     room(&format!(
-        "lambert = [{reflectance}, {reflectance}, {reflectance}], emission = [{EMISSION}, {EMISSION}, {EMISSION}]"
+        "lambert = [{reflectance}, {reflectance}, {reflectance}], emission = [{EMISSION}, \
+         {EMISSION}, {EMISSION}]"
     ))
 }
 
@@ -165,7 +166,8 @@ fn a_wall_that_shines_a_little_is_as_bright_as_one_that_does_not_and_a_little_mo
     assert!((dark.at(24, 24)[0] - by_hand).abs() < 2e-3, "{:?}", dark.at(24, 24));
 }
 
-/// What is seen in the middle of a picture of a plate of some material before a wall that shines with radiance 1.
+/// What is seen in the middle of a picture of a plate of some material before a wall that shines with
+/// radiance 1.
 fn through(gl: &Gl, material: &str) -> f32 {
     let scene = scene(&format!(
         r#"

@@ -1,4 +1,4 @@
-//! The library in somebody else's context: borrowed textures, a shared glow context.
+//! The library in a host's context: borrowed textures, a shared glow context.
 
 #![expect(unsafe_code, reason = "a host speaks OpenGL itself")]
 

@@ -1,4 +1,4 @@
-//! Resolved shaders: the driver takes them for the same programs, and the tables say what it says.
+//! Resolved shaders: the driver finds the same programs in them, and the tables agree with it.
 
 #![expect(unsafe_code, reason = "programs are linked and asked by raw calls")]
 
@@ -95,7 +95,7 @@ fn enum_of(glsl_type: &str) -> u32 {
     }
 }
 
-/// What a table lacks or tells wrongly about a program.
+/// What a table lacks or has wrong about a program.
 fn untruths(table: &Interface, program: &Linked<'_>) -> Vec<String> {
     let active = program.active();
     let types = |list: &[Variable]| {

@@ -270,7 +270,7 @@ fn parts_of_the_photons_are_drawn_with_the_radii_of_all_so_far() {
     let error = relative_difference(&found, &sum(&of_first, &of_second));
     assert!(error < 1e-3, "{error}");
     assert_eq!(pipeline.radii().unwrap().read().unwrap(), of_all);
-    // The comparison tells this from one splat of all with the last radii.
+    // The comparison distinguishes this from one splat of all with the last radii.
     let planted = relative_difference(&found, &splat(all, &of_all));
     assert!(planted > 0.02, "{planted}");
 }
@@ -365,7 +365,7 @@ fn positions_come_from_a_depth_buffer() {
         let error = relative_difference(&found, &expected);
         assert!(error < 0.02, "{error}, reversed: {is_reversed}");
     }
-    // The other convention is told apart.
+    // The other convention gives other places.
     let wrong = depth_of(&own.position, &view, false);
     let texture = texture(&gl, glow::DEPTH_COMPONENT32F, glow::DEPTH_COMPONENT, glow::FLOAT, &wrong);
     let (_maker, position) = positions(texture, false, true, &view);

@@ -1,4 +1,4 @@
-//! Light that gets where it could not go: from one face to another, and through the boxes of the Cornell box.
+//! Light leaks: from one face to another, and through the boxes of the Cornell box.
 
 use glam::{DVec3, UVec2, Vec3};
 use varikernel::photon::PhotonPoint;
@@ -13,7 +13,8 @@ use crate::support::egl;
 
 const BOXES: &str = include_str!("../../assets/scenes/cornell_boxes.toml");
 
-/// A flat part of a surface: the surface's number and the normal towards the camera, to a tenth, since the left wall is not quite flat.
+/// A flat part of a surface: the surface's number and the normal towards the camera, to a tenth, since the
+/// left wall is not quite flat.
 type Face = (i64, [i64; 3]);
 
 fn face(number: f32, normal: Vec3) -> Face {
@@ -55,7 +56,8 @@ fn shares_elsewhere(
     faces.into_iter().filter_map(share).collect()
 }
 
-/// Box faces, the room's corners, and where boxes stand on the floor: kernels end there, so that nothing at all gets across.
+/// Box faces, the room's corners, and where boxes stand on the floor: kernels end there, so that nothing at
+/// all gets across.
 #[test]
 fn nothing_gets_from_one_face_to_another() {
     let gl = egl();
@@ -68,7 +70,8 @@ fn nothing_gets_from_one_face_to_another() {
         assert!(shares.len() >= 9, "{shares:?}");
         assert!(shares.iter().all(|(_, share)| *share == 0.0), "{radius:?}: {shares:?}");
     }
-    // If all walls are one surface, nothing but the kernel's thickness is between the floor and the boxes' tops.
+    // If all walls are one surface, nothing but the kernel's thickness is between the floor and the boxes'
+    // tops.
     let one = BOXES.replace("[surfaces.floor]", "[surfaces.all]");
     let names = ["ceiling", "back", "right", "left", "tall", "short"];
     let mut one = one
@@ -128,8 +131,8 @@ fn shares_through_walls(
     (1..).zip(&scene.geometry().surfaces).map(of_surface).collect()
 }
 
-/// The floor goes on below the boxes, so that a kernel beside a box reaches the floor on its other side. Measured: 0.59 %
-/// of the floor's light, and 6.9 % with radii three times as large.
+/// The floor goes on below the boxes, so that a kernel beside a box reaches the floor on its other side.
+/// Measured: 0.59 % of the floor's light, and 6.9 % with radii three times as large.
 #[test]
 fn little_gets_through_the_boxes_along_the_floor() {
     let gl = egl();

@@ -111,7 +111,8 @@ fn steps_of_any_number_of_photons_weigh_as_their_photons_do() {
     live.step().unwrap();
     assert_eq!((live.photons(), live.steps()), ((1 << 14) + (1 << 10), 3));
     let after = mean(&live.read_indirect().unwrap());
-    // Weighed alike, a third of the light would come from the small step; its noise is some percent either way.
+    // Weighed alike, a third of the light would come from the small step; its noise is some percent either
+    // way.
     assert!((after / before - 1.0).abs() < 0.05, "{before} {after}");
 }
 

@@ -263,7 +263,7 @@ fn a_context_that_the_driver_lost_is_an_error_from_then_on() {
     assert_eq!(calls.all(), []);
 }
 
-/// The driver tells of the loss at each of its answers: every call that asks sees it, or goes on unharmed.
+/// The driver reports the loss at each call: every call that checks sees it, and the others are not harmed.
 #[test]
 fn a_loss_in_the_middle_of_a_call_is_told() {
     let counts = random_map(12, 19, 3);
@@ -312,7 +312,7 @@ fn out_of_memory_says_how_much_was_asked_for_and_what_to_do() {
     }
     assert_eq!(live(), before);
     assert!(!gl.is_lost(), "a host may go on with less");
-    // As the driver says it of a draw.
+    // As the driver reports it for a draw.
     let mut pipeline = RadiusPipeline::new(&gl, map.size(), map.format(), settings).unwrap();
     LATER_ERROR.set(Some((1, glow::OUT_OF_MEMORY)));
     let error = pipeline.render(&map).map(drop).unwrap_err();
@@ -323,8 +323,8 @@ fn out_of_memory_says_how_much_was_asked_for_and_what_to_do() {
 
 const CHILD: &str = "VARIKERNEL_TEST_WITHOUT_CONTEXT";
 
-/// In a process of its own, which would go down with a crash: the host has taken the context away before our objects were
-/// dropped, with a word ([`Gl::abandon`]) or without.
+/// In a process of its own, which would go down with a crash: the host has taken the context away before our
+/// objects were dropped, with a call of [`Gl::abandon`] or without.
 #[test]
 fn objects_are_dropped_without_a_current_context() {
     match std::env::var(CHILD).as_deref() {

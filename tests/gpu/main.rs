@@ -1,4 +1,5 @@
-//! The library on real contexts: EGL, and OSMesa where that can be had. A missing context fails the tests with the reason.
+//! The library on real contexts: EGL, and OSMesa where that can be had. A missing context fails the tests
+//! with the reason.
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 

@@ -228,7 +228,7 @@ fn resizing_compiles_nothing_and_believes_nothing() {
             pipeline.resize(size).unwrap();
             assert_eq!(calls.all(), [], "the same size is free");
             let required = RadiusPipeline::memory_required_on(gl.info(), size, &settings).unwrap();
-            // A host that says that nothing changed is not believed: there is no frame before.
+            // A host's declaration that nothing changed is ignored here: there is no frame before.
             let counts = random_map(size.x, size.y, 3);
             let before = held(&gl);
             for changed in [Changed::Nothing, Changed::Everything] {

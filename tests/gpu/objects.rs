@@ -112,7 +112,8 @@ fn fail_in_pictures(gl: &varikernel::Gl) {
     assert_eq!(live(), alive);
 }
 
-/// Each object is dropped before and after each other one: the rotations of a list hold both orders of every pair.
+/// Each object is dropped before and after each other one: the rotations of a list hold both orders of every
+/// pair.
 #[test]
 fn objects_may_be_dropped_in_any_order() {
     const OBJECTS: usize = 10;

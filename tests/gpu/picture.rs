@@ -45,7 +45,7 @@ fn every_picture_of_the_shipped_scenes_is_finite() {
             for estimate in [Estimate::Splat, Estimate::Gather { count_correction: true }] {
                 let (layers, account) = renderer.picture(&PictureSettings { estimate, ..settings }).unwrap();
                 assert_finite(&layers, name);
-                // Water lets no direct light through.
+                // Direct light does not pass through water.
                 let is_lit = layers.beauty.values().iter().flatten().any(|&value| value > 0.0);
                 assert!(is_lit || photons == 1, "{name}");
                 assert!(estimate != Estimate::Splat || account.energy_error() < 1e-4, "{name}: {account:?}");
@@ -119,8 +119,8 @@ fn settings_out_of_range_are_refused_by_name() {
     assert!(error.starts_with("photons = 0"), "{error}");
 }
 
-/// Noise is the difference of two seeds; the mean squared error of a kernel in the plane falls as photons^(-2/3) if n grows as
-/// photons^(2/3).
+/// Noise is the difference of two seeds; the mean squared error of a kernel in the plane falls as
+/// photons^(-2/3) if n grows as photons^(2/3).
 #[test]
 fn sixteen_times_the_photons_bring_it_nearer_to_the_reference() {
     let gl = egl();
@@ -153,7 +153,8 @@ fn sixteen_times_the_photons_bring_it_nearer_to_the_reference() {
 #[test]
 fn a_mirror_shows_what_is_before_it() {
     let gl = egl();
-    // A mirror straight ahead, and behind the camera a wall that is lit from the side by nothing but its own lamp.
+    // A mirror straight ahead, and behind the camera a wall that is lit from the side by nothing but its own
+    // lamp.
     let scene = scene(
         r#"
         title = "A mirror"

@@ -29,7 +29,7 @@ pub(crate) fn cases() -> Vec<(&'static str, Image<u32>, u32, u32)> {
     ]
 }
 
-/// Holds settings of one question against the definition, which is slow and the same for all orders.
+/// Compares settings of one question with the definition, which is slow and the same for all orders.
 pub(crate) fn agree(gl: &Gl, name: &str, density: &Image<u32>, all: &[Settings]) {
     let Some(first) = all.first() else { return };
     let expected = reference::radius(density, first.search);
@@ -76,7 +76,7 @@ fn brackets_of_tiles_of_every_class_are_exact() {
             let settings = Settings { search: question, limited_mask: true, ..Settings::default() };
             let found = on_gpu(&gl, &density, settings);
             assert_same(&found, &expected, &format!("{settings:?}"));
-            // Without the mask, MR itself is never asked for.
+            // Without the mask, MR itself is never counted.
             let bounds = CountBounds::of(&density, question);
             let map = DensityMap::upload(&gl, &density, bounds).unwrap();
             let settings = Settings { limited_mask: false, ..settings };
@@ -142,7 +142,8 @@ fn searches_longer_than_llvmpipe_allows_in_a_pass_are_exact() {
     }
 }
 
-/// A map on which neighbours take different ways through a binary search: llvmpipe counts the turns of all of them.
+/// A map on which neighbours take different ways through a binary search: llvmpipe counts the turns of all of
+/// them.
 #[test]
 fn a_binary_search_whose_neighbours_part_is_refused_or_exact() {
     let gl = egl();
@@ -174,7 +175,8 @@ fn what_llvmpipe_would_cut_short_even_so_is_refused() {
     };
     let forward = brute_force_forward(32);
     let binary = Settings { search: Search { order: Order::Binary, ..forward.search }, ..forward };
-    // One box of radius 126 takes 254 * 254 turns of two loops; halving tries several large boxes in one pass.
+    // One box of radius 126 takes 254 * 254 turns of two loops; halving tries several large boxes in one
+    // pass.
     for (settings, allowed, refused) in [(forward, 126, 127), (binary, 45, 70)] {
         try_radius(settings, allowed).unwrap();
         let result = try_radius(settings, refused);

@@ -1,4 +1,4 @@
-//! Every shader is OpenGL 3.3 core and nothing more: under a loader that knows only its commands, and under
+//! Every shader is OpenGL 3.3 core and nothing more: under a loader that has only its commands, and under
 //! glslangValidator.
 
 #![expect(unsafe_code, reason = "a loader is wrapped")]
@@ -121,7 +121,7 @@ fn every_shader_passes_glslang_validator_and_enables_no_extension() {
         std::fs::write(&file, text).unwrap();
         files.push(file);
     }
-    // As they are resolved for a reader, under names that tell the two apart.
+    // As they are resolved for a reader, under names that distinguish the two.
     for stage in ShaderStage::ALL {
         let texts: BTreeSet<String> = sources.iter().map(|source| source.resolved(stage)).collect();
         for (number, text) in texts.iter().enumerate() {
@@ -217,7 +217,8 @@ fn the_strict_loader_sees_a_command_outside_of_core() {
     use glow::HasContext as _;
     let gl = strict(&working_candidates()[0]);
     let result = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
-        // SAFETY: the context is current; glTexStorage2D is of OpenGL 4.2, so glow panics before calling anything.
+        // SAFETY: the context is current; glTexStorage2D is of OpenGL 4.2, so glow panics before calling
+        // anything.
         unsafe { gl.glow().tex_storage_2d(glow::TEXTURE_2D, 1, glow::R8, 1, 1) };
     }));
     assert!(result.is_err());

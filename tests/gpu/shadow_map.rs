@@ -92,8 +92,8 @@ fn cut_ridge(top: f64, side: f64, half_width: f64) -> String {
     format!("[surfaces.ridge]\nmaterial = \"white\"\nquads = [{left}, {middle}, {right}]")
 }
 
-/// A texel is 1/256 of the distance wide, and the middles of those next to the strip's middle are on the slopes. As what receives
-/// light the strip is lit; as what is in its way it lets none through.
+/// A texel is 1/256 of the distance wide, and the middles of those next to the strip's middle are on the
+/// slopes. As what receives light the strip is lit; as what is in its way it lets none through.
 #[test]
 fn a_strip_that_no_texel_sees_is_lit_and_casts_a_shadow() {
     let gl = egl();
@@ -115,8 +115,8 @@ fn a_strip_that_no_texel_sees_is_lit_and_casts_a_shadow() {
     assert!(mapped.values().iter().all(|value| value[1] == 0.0), "light comes through");
 }
 
-/// Spheres are met exactly: a ball casts a round shadow, the half of it that is turned away is dark, and nothing on it shades
-/// itself.
+/// Spheres are met exactly: a ball casts a round shadow, the half of it that is turned away is dark, and
+/// nothing on it shades itself.
 #[test]
 fn a_ball_and_its_shadow_are_those_of_rays() {
     let gl = egl();
@@ -154,8 +154,9 @@ fn shipped_scenes_with_point_lamps_are_those_of_rays() {
     }
 }
 
-/// Area lights: 64 places that all pixels share, against 1024 rays a pixel to places of their own. Measured: 0.15, 0.40 and
-/// 0.44 % of the light differ; of the pixels, up to 1.7 % by more than a tenth, all in penumbrae.
+/// Area lights: 64 places that all pixels share, against 1024 rays a pixel to places of their own. Measured:
+/// 0.15, 0.40 and 0.44 % of the light differ; of the pixels, up to 1.7 % by more than a tenth, all in
+/// penumbrae.
 #[test]
 fn soft_shadows_are_those_of_many_rays() {
     let gl = egl();
@@ -208,11 +209,13 @@ fn sizes_do_not_matter_and_nothing_is_lit_from_behind() {
     assert!(lit.direct.values().iter().flatten().all(|&value| value > 0.0));
 }
 
-/// A plate close above the wall, in a scene that reaches 10^4 times as far: what is small casts its shadow all the same.
+/// A plate close above the wall, in a scene that reaches 10^4 times as far: what is small casts its shadow
+/// all the same.
 #[test]
 fn a_small_thing_casts_a_shadow_in_a_large_scene() {
     let gl = egl();
-    let far = "[surfaces.far]\nmaterial = \"white\"\nquads = [[[-1e4, -9, 1e4], [1e4, -9, 1e4], [1e4, -9, -1e4], [-1e4, -9, -1e4]]]";
+    let far = "[surfaces.far]\nmaterial = \"white\"\n\
+               quads = [[[-1e4, -9, 1e4], [1e4, -9, 1e4], [1e4, -9, -1e4], [-1e4, -9, -1e4]]]";
     let plate = "[surfaces.plate]\nmaterial = \"white\"\nquads = [\
                  [[0.1, 0.1, -0.99], [0.4, 0.1, -0.99], [0.4, 0.4, -0.99], [0.1, 0.4, -0.99]]]";
     let lamp = POINT.replace("[0, 0, 1]", "[-3, 0.3, -0.5]").replace("[0, 0, -1]", "[1, 0, 0]");
@@ -228,7 +231,8 @@ fn a_small_thing_casts_a_shadow_in_a_large_scene() {
 #[test]
 fn a_large_thing_close_to_the_lamp_casts_its_shadow() {
     let gl = egl();
-    let roof = "[surfaces.roof]\nmaterial = \"white\"\nquads = [[[-1e6, -1e6, 0.9], [1e6, -1e6, 0.9], [1e6, 1e6, 0.9], [-1e6, 1e6, 0.9]]]";
+    let roof = "[surfaces.roof]\nmaterial = \"white\"\n\
+                quads = [[[-1e6, -1e6, 0.9], [1e6, -1e6, 0.9], [1e6, 1e6, 0.9], [-1e6, 1e6, 0.9]]]";
     let shaded = picture(&gl, &lamp_and_wall(POINT, roof), 33, DirectLight::ShadowMap, 1).direct;
     assert!(shaded.values().iter().flatten().all(|&value| value == 0.0), "light comes through");
     // Behind the lamp, and close to the wall that it would shade if it lay before it.

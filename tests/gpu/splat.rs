@@ -174,7 +174,8 @@ fn known_densities_give_the_known_estimate_and_bias() {
 #[test]
 fn light_stays_on_its_side_of_a_wall_up_to_a_measured_share() {
     let gl = egl();
-    // A floor with a thin wall across it; the same surface on both sides, so that only the kernel's width limits the leak.
+    // A floor with a thin wall across it; the same surface on both sides, so that only the kernel's width
+    // limits the leak.
     let settings =
         PictureSettings { min_photons: 25, ..settings(64, Kernel::Silverman, RadiusChoice::Variable) };
     let leak = |settings: &PictureSettings| {

@@ -78,8 +78,8 @@ fn stages_come_in_the_order_of_their_passes_each_once() {
     }
 }
 
-/// Boxes of up to 49 x 49 pixels against boxes of up to 5 x 5: some hundred times the fetches. A time is compared with
-/// another, not with the clock.
+/// Boxes of up to 49 x 49 pixels against boxes of up to 5 x 5: some hundred times the fetches. A time is
+/// compared with another, not with the clock.
 #[test]
 fn a_pass_with_more_to_do_takes_longer() {
     let gl = egl();

@@ -15,7 +15,7 @@ pub(crate) fn egl() -> Gl {
     context::open(&DeviceChoice::Egl(None)).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Every way to a context that works here: EGL lists devices that may not be opened, which is no fault of ours.
+/// Every way to a context that works here: EGL may list devices that this user may not open.
 pub(crate) fn working_candidates() -> Vec<Candidate> {
     let (candidates, missing) = context::candidates();
     let working: Vec<_> = candidates.into_iter().filter(|candidate| candidate.open().is_ok()).collect();
@@ -23,7 +23,7 @@ pub(crate) fn working_candidates() -> Vec<Candidate> {
     working
 }
 
-/// OSMesa, or the reason why it does not work; nothing where it can't be had, which is said.
+/// OSMesa, or the reason why it does not work; nothing where it can't be had, which is printed.
 #[track_caller]
 pub(crate) fn osmesa() -> Option<Gl> {
     osmesa_is_here().then(|| context::open(&DeviceChoice::OsMesa).unwrap_or_else(|error| panic!("{error}")))
@@ -37,7 +37,7 @@ pub(crate) fn each() -> impl Iterator<Item = Gl> {
     names.filter_map(|is_egl| if is_egl { Some(egl()) } else { osmesa() })
 }
 
-/// A small generator of our own words: SplitMix64 (Steele, Lea, Flood 2014).
+/// A small random generator: SplitMix64 (Steele, Lea, Flood 2014).
 pub(crate) struct Random(pub(crate) u64);
 
 impl Random {

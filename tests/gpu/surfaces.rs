@@ -10,7 +10,8 @@ use varikernel::view::View;
 use crate::stage::settings;
 use crate::support::egl;
 
-/// Pixels whose surface is another than the ray's, and the largest distance from the ray's place where it is the same.
+/// Pixels whose surface is another than the ray's, and the largest distance from the ray's place where it is
+/// the same.
 fn differences(
     scene: &Scene,
     view: &View,
@@ -117,7 +118,8 @@ fn what_the_camera_sees_is_shown_however_large_or_small_the_rest_is() {
     assert!((3000..9000).contains(&alone), "{alone}");
     for (far, radius) in [(1e3, 1.0), (1e6, 1.0), (5e8, 1e8), (1e6, 1e-6)] {
         let stray = format!(
-            "stray = {{ material = \"grey\", spheres = [{{ centre = [-{far:e}, -{far:e}, -{far:e}], radius = {radius:e} }}] }}"
+            "stray = {{ material = \"grey\", spheres = [{{ centre = [-{far:e}, -{far:e}, -{far:e}], radius = \
+             {radius:e} }}] }}"
         );
         assert_eq!(seen(&gl, &box_on_ground(1.0, &stray), 1.0), alone, "a sphere of {radius} at {far}");
     }
@@ -131,8 +133,8 @@ fn a_ground_of_any_size_is_seen_to_the_horizon() {
     let gl = egl();
     for half in [1e3, 1e5, 1e6] {
         let ground = format!(
-            "ground = {{ material = \"grey\", quads = [[[-{half:e}, -0.01, {half:e}], [{half:e}, -0.01, {half:e}], \
-             [{half:e}, -0.01, -{half:e}], [-{half:e}, -0.01, -{half:e}]]] }}"
+            "ground = {{ material = \"grey\", quads = [[[-{half:e}, -0.01, {half:e}], [{half:e}, -0.01, \
+             {half:e}], [{half:e}, -0.01, -{half:e}], [-{half:e}, -0.01, -{half:e}]]] }}"
         );
         let scene = box_on_ground(1.0, &ground);
         assert_eq!(seen(&gl, &scene, 1.0), 96 * 96, "a ground of {half}");

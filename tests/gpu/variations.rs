@@ -71,8 +71,8 @@ fn every_variation_is_exact_beside_a_thousand_million_photons() {
     }
 }
 
-/// Sides around powers of s, where the last pass has little or nothing left to draw, and one pipeline for two maps:
-/// the second finds the first one's entries in both textures.
+/// Sides around powers of s, where the last pass has little or nothing left to draw, and one pipeline for two
+/// maps: the second finds the first one's entries in both textures.
 #[test]
 fn unfinished_texels_leave_nothing_of_another_frame() {
     let gl = egl();

@@ -58,12 +58,14 @@ fn rays_along_the_axes_meet_walls_at_grazing_distance() {
     }
 }
 
-/// A stray sphere, and a ground that is much larger than the rest, have boxes of their own; nothing is missed from anywhere.
+/// A stray sphere, and a ground that is much larger than the rest, have boxes of their own; nothing is missed
+/// from anywhere.
 #[test]
 fn nothing_is_missed_beside_what_is_far_or_large() {
-    let far = "\n[surfaces.stray]\nmaterial = \"white\"\nspheres = [{ centre = [-5e8, 2e8, 1e8], radius = 3 }]\n\
-               [surfaces.ground]\nmaterial = \"white\"\nquads = [[[-1e7, -1, 1e7], [1e7, -1, 1e7], [1e7, -1, -1e7], \
-               [-1e7, -1, -1e7]]]\n";
+    let far = "\n[surfaces.stray]\nmaterial = \"white\"\n\
+               spheres = [{ centre = [-5e8, 2e8, 1e8], radius = 3 }]\n\
+               [surfaces.ground]\nmaterial = \"white\"\n\
+               quads = [[[-1e7, -1, 1e7], [1e7, -1, 1e7], [1e7, -1, -1e7], [-1e7, -1, -1e7]]]\n";
     let scene = crate::load(&(crate::shipped_text("cornell_boxes.toml") + far)).unwrap();
     let mut random = Pcg64::seed_from_u64(4);
     let mut point =

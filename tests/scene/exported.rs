@@ -1,4 +1,5 @@
-//! Scenes as Blender, MeshLab and 3ds Max write them, with the habits of each: triangles, areas and colours counted by hand.
+//! Scenes as Blender, MeshLab and 3ds Max write them, with the habits of each: triangles, areas and colours
+//! counted by hand.
 
 use std::path::Path;
 

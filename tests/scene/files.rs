@@ -1,4 +1,4 @@
-//! Scene files: the shipped ones hold their numbers, and bad ones are told by line and field.
+//! Scene files: the shipped ones hold their numbers, and errors in bad ones have line and field.
 
 use serde_json::Value;
 use varikernel::glam::Vec3;
@@ -67,9 +67,8 @@ fn the_cornell_boxes_hold_the_committed_numbers() {
             assert_eq!(found.centre, vector(&expected["center"]));
             assert!((f64::from(found.radius) - expected["radius"].as_f64().unwrap()).abs() < 1e-9);
             let scattering = scene.materials()[found.material as usize].scattering;
-            assert!(
-                matches!(scattering, Scattering::Dielectric { index } if f64::from(index) == expected["ior"].as_f64().unwrap())
-            );
+            let expected = expected["ior"].as_f64().unwrap();
+            assert!(matches!(scattering, Scattering::Dielectric { index } if f64::from(index) == expected));
         }
     }
 }

@@ -153,7 +153,8 @@ fn a_light_that_is_far_aims_at_the_scene_with_the_power_that_goes_there() {
         ] {
             let scene = floor_under(&light);
             let (power, count) = lands(&scene);
-            // The floor covers 4 / (2 π) of the sphere's disc, so that a share of 0.64 lands, within four deviations.
+            // The floor covers 4 / (2 π) of the sphere's disc, so that a share of 0.64 lands, within four
+            // deviations.
             assert!(
                 (count as f64 / 4000.0 - 2.0 / PI).abs() < 4.0 * (0.23_f64 / 4000.0).sqrt(),
                 "{count}: {light}"
@@ -176,7 +177,8 @@ fn a_far_light_that_is_turned_away_sends_nothing() {
     let away = format!("[surfaces.lamp]\nmaterial = \"glow\"\nquads = [{upwards}]");
     assert_eq!(lands(&floor_under(&away)).0, 0.0);
     // A spot that looks past the floor.
-    let spot = "[lights.lamp]\npoint = [0, 100, 0]\nintensity = [3, 3, 3]\ndirection = [1, 0, 0]\nangle_degrees = 20";
+    let spot = "[lights.lamp]\npoint = [0, 100, 0]\nintensity = [3, 3, 3]\ndirection = [1, 0, 0]\n\
+                angle_degrees = 20";
     assert_eq!(lands(&floor_under(spot)).0, 0.0);
 }
 
@@ -194,7 +196,8 @@ fn a_light_that_lights_itself_is_not_aimed_at_a_small_thing_beside_it() {
 
 #[test]
 fn a_sun_leaves_photons_for_a_lamp_by_what_both_send_to_the_scene() {
-    // The sun sends 4π times as much as it takes to put on the sphere around the floor what the lamp sends in all.
+    // The sun sends 4π times as much as it takes to put on the sphere around the floor what the lamp sends in
+    // all.
     let (lamp, distance) = (2.0, 1e7_f64);
     let sun = lamp * 4.0 * distance * distance / 2.0;
     let scene = floor_under(&format!(

@@ -44,7 +44,8 @@ fn an_obj_is_scaled_moved_and_faces_as_it_says() {
 
 #[test]
 fn an_mtl_says_what_is_glass_mirror_and_light() {
-    let obj = b"mtllib a.mtl\nv 0 0 0\nv 2 0 0\nv 2 0 2\nv 0 0 2\nusemtl m\nf 1 2 3\nusemtl g\nf 1 3 4\nusemtl d\nf 1 2 4\n";
+    let obj = b"mtllib a.mtl\nv 0 0 0\nv 2 0 0\nv 2 0 2\nv 0 0 2\nusemtl m\nf 1 2 3\nusemtl g\nf 1 3 4\n\
+                usemtl d\nf 1 2 4\n";
     let mtl =
         b"newmtl m\nKs 0.9 0.8 0.7\nillum 3\nnewmtl g\nNi 1.4\nillum 6\nnewmtl d\nKd 0.1 0.2 0.3\nKe 5 6 7\n";
     let scene = with_mesh("mesh = { file = \"a.obj\" }", &[("a.obj", obj), ("a.mtl", mtl)]).unwrap();
@@ -62,7 +63,8 @@ fn gltf(uri: &str, more: &str) -> String {
         "{{\"asset\":{{\"version\":\"2.0\"}},\"scene\":0,\"scenes\":[{{\"nodes\":[0]}}],
         \"nodes\":[{{\"mesh\":0,\"translation\":[5,0,0]{more}}}],
         \"meshes\":[{{\"primitives\":[{{\"attributes\":{{\"POSITION\":0}},\"material\":0}}]}}],
-        \"materials\":[{{\"name\":\"lens\",\"extensions\":{{\"KHR_materials_transmission\":{{\"transmissionFactor\":1}},
+        \"materials\":[{{\"name\":\"lens\",\"extensions\":{{
+        \"KHR_materials_transmission\":{{\"transmissionFactor\":1}},
         \"KHR_materials_ior\":{{\"ior\":1.7}}}}}}],
         \"extensionsUsed\":[\"KHR_materials_transmission\",\"KHR_materials_ior\"],
         \"buffers\":[{{\"uri\":\"{uri}\",\"byteLength\":36}}],

@@ -100,7 +100,8 @@ fn images_of_reflectance_and_emission_are_hung_on_faces_that_have_places_for_the
         ("map_Kd -clamp on t.png", 1.0),
     ] {
         let scene = load(placed, lines);
-        // A quarter of the way from each side is the middle of a texel, and beyond it a clamped image goes on.
+        // A quarter of the way from each side is the middle of a texel, and beyond it a clamped image goes
+        // on.
         for (x, colour) in [(-0.5, Vec3::X), (-0.9, Vec3::X), (0.5, Vec3::Z), (0.0, Vec3::new(0.5, 0.0, 0.5))]
         {
             let found = reflectance_at(&scene, x);

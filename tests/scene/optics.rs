@@ -62,14 +62,17 @@ fn beam(surfaces: &str) -> Vec<Photon> {
     traced(&scene, &TraceSettings { photons: 20_000, bounces: 1, ..TraceSettings::default() }).0
 }
 
-const FLOOR: &str = "[surfaces.floor]\nmaterial = \"white\"\nquads = [[[-99, 0, -99], [-99, 0, 99], [99, 0, 99], [99, 0, -99]]]\n";
+const FLOOR: &str = "[surfaces.floor]\nmaterial = \"white\"\n\
+                     quads = [[[-99, 0, -99], [-99, 0, 99], [99, 0, 99], [99, 0, -99]]]\n";
 
 #[test]
 fn a_pane_passes_what_two_faces_leave() {
     let pane = "[surfaces.pane]\nmaterial = \"glass\"\nquads = [
-        [[-9, 5, -9], [-9, 5, 9], [9, 5, 9], [9, 5, -9]], [[-9, 4, -9], [9, 4, -9], [9, 4, 9], [-9, 4, 9]]]\n";
+        [[-9, 5, -9], [-9, 5, 9], [9, 5, 9], [9, 5, -9]],
+        [[-9, 4, -9], [9, 4, -9], [9, 4, 9], [-9, 4, 9]]]\n";
     let landings = beam(&format!("{FLOOR}{pane}"));
-    // (1 - R) / (1 + R) with R = 0.04, all reflections between the faces counted: 12/13 of 20000, within 4 deviations.
+    // (1 - R) / (1 + R) with R = 0.04, all reflections between the faces counted: 12/13 of 20000, within 4
+    // deviations.
     let expected = 20_000.0 * 12.0 / 13.0;
     assert!((landings.len() as f64 - expected).abs() < 4.0 * (expected / 13.0).sqrt(), "{}", landings.len());
     assert!(landings.iter().all(Photon::passed_glass));
@@ -78,8 +81,10 @@ fn a_pane_passes_what_two_faces_leave() {
 
 #[test]
 fn a_mirror_turns_the_beam_and_takes_its_share() {
-    let mirror = "[surfaces.mirror]\nmaterial = \"silver\"\nquads = [[[-2, 4, -2], [-2, 4, 2], [2, 8, 2], [2, 8, -2]]]
-        [surfaces.wall]\nmaterial = \"white\"\nquads = [[[-50, -50, -50], [-50, 50, -50], [-50, 50, 50], [-50, -50, 50]]]\n";
+    let mirror = "[surfaces.mirror]\nmaterial = \"silver\"
+        quads = [[[-2, 4, -2], [-2, 4, 2], [2, 8, 2], [2, 8, -2]]]
+        [surfaces.wall]\nmaterial = \"white\"
+        quads = [[[-50, -50, -50], [-50, 50, -50], [-50, 50, 50], [-50, -50, 50]]]\n";
     let landings = beam(mirror);
     assert_eq!(landings.len(), 20_000);
     for photon in &landings {

@@ -1,4 +1,5 @@
-//! Photons against what they should do: a closed form, an estimator that shares no code, and walls without leaks.
+//! Photons against what they should do: a closed form, an estimator that shares no code, and walls without
+//! leaks.
 
 use std::f64::consts::PI;
 
@@ -14,16 +15,17 @@ use crate::{load, settings, shipped_text, traced};
 /// How far photons may be from a sum that should be normally distributed, in deviations.
 const TOLERANCE: f64 = 4.5;
 
-/// Form factor from a point of a plane to the part of a parallel plane `height` above it that lies between the point's
-/// foot and (`along`, `across`); negative on one negative side
-/// (E. Sparrow, R. Cess, "Radiation Heat Transfer", 1978; catalogue number B-3).
+/// Form factor from a point of a plane to the part of a parallel plane `height` above it that lies between
+/// the point's foot and (`along`, `across`); negative on one negative side (E. Sparrow, R. Cess, "Radiation
+/// Heat Transfer", 1978; catalogue number B-3).
 fn corner(along: f64, across: f64, height: f64) -> f64 {
     let (x, y) = (along / height, across / height);
     let (by_x, by_y) = ((1.0 + x * x).sqrt(), (1.0 + y * y).sqrt());
     (x / by_x * (y / by_x).atan() + y / by_y * (x / by_y).atan()) / (2.0 * PI)
 }
 
-/// Share of the lamp's light that arrives between (x0, z0) and (x1, z1) on the floor of the Cornell box, without walls.
+/// Share of the lamp's light that arrives between (x0, z0) and (x1, z1) on the floor of the Cornell box,
+/// without walls.
 fn share_of_floor([x0, x1]: [f64; 2], [z0, z1]: [f64; 2], lamp_height: f64) -> f64 {
     const STEPS: u32 = 12;
     let (width, depth) = (x1 - x0, z1 - z0);
@@ -40,8 +42,8 @@ fn share_of_floor([x0, x1]: [f64; 2], [z0, z1]: [f64; 2], lamp_height: f64) -> f
     sum / f64::from(STEPS * STEPS) * width * depth / (130.0 * 105.0)
 }
 
-/// How far the first landings on the floor are from the closed form, in deviations: over 8 x 8 patches by their squares,
-/// and in all.
+/// How far the first landings on the floor are from the closed form, in deviations: over 8 x 8 patches by
+/// their squares, and in all.
 fn floor_deviations(photons: &[Photon], emitted: f64, lamp_height: f64) -> [f64; 2] {
     // Inside the slanted wall.
     let (width, depth) = (549.0 / 8.0, f64::from(559.2_f32) / 8.0);
@@ -270,7 +272,7 @@ fn no_photon_lands_outside_the_room_or_inside_a_box() {
             (position - a).dot((b - a).cross(c - a).normalize()) < -1e-3
         })
     };
-    // The middles of the boxes, to see that the question is asked rightly.
+    // The middles of the boxes, to check the test itself.
     assert!(
         inside_box("tall", DVec3::new(368.0, 165.0, 351.0))
             && inside_box("short", DVec3::new(185.0, 82.0, 169.0))

@@ -81,7 +81,8 @@ fn the_camera_maps_its_view_to_the_picture() {
     let (near, far) = camera.depth_range(Vec3::new(-1.0, -1.0, -5.0), Vec3::new(1.0, 1.0, 10.0));
     assert!((4.9..5.0).contains(&near) && (20.0..20.1).contains(&far), "{near} to {far}");
     let to_picture = camera.projection(2.0, near, far) * camera.view();
-    // At depth 10 the upper edge is 10 above, the left edge 20 to the side; looking along z, x runs to the left.
+    // At depth 10 the upper edge is 10 above, the left edge 20 to the side; looking along z, x runs to the
+    // left.
     for (world, picture) in
         [([0.0, 0.0, 0.0], [0.0, 0.0]), ([0.0, 10.0, 0.0], [0.0, 1.0]), ([20.0, 0.0, 0.0], [-1.0, 0.0])]
     {

@@ -1,4 +1,5 @@
-//! Normals of smooth meshes: faces that meet at a position share its normal, however the file is cut into pieces.
+//! Normals of smooth meshes: faces that meet at a position share its normal, however the file is cut into
+//! pieces.
 
 use varikernel::glam::Vec3;
 

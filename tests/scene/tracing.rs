@@ -1,4 +1,4 @@
-//! What photons owe to their seed, and to nothing else.
+//! Photons depend on their seed, and on nothing else.
 
 use bytemuck::cast_slice;
 use rayon::ThreadPoolBuilder;
@@ -79,9 +79,11 @@ fn batches_hold_every_landing_once_and_in_order() {
 fn photons_together_carry_the_power_of_all_lights() {
     let text = shipped_text("cornell_empty.toml")
         + "\n[lights.bulb]\npoint = [100, 300, 100]\nintensity = [2e4, 1e4, 3e4]\n\
-           [lights.torch]\npoint = [300, 100, 300]\nintensity = [5e4, 5e4, 0]\ndirection = [0, 1, 1]\nangle_degrees = 30\n\
+           [lights.torch]\npoint = [300, 100, 300]\nintensity = [5e4, 5e4, 0]\ndirection = [0, 1, 1]\n\
+           angle_degrees = 30\n\
            [materials.glow]\nlambert = [0, 0, 0]\nemission = [1, 2, 3]\n\
-           [surfaces.panel]\nmaterial = \"glow\"\nquads = [[[500, 100, 100], [500, 100, 200], [500, 300, 200], [500, 300, 100]]]\n";
+           [surfaces.panel]\nmaterial = \"glow\"\n\
+           quads = [[[500, 100, 100], [500, 100, 200], [500, 300, 200], [500, 300, 100]]]\n";
     let scene = load(&text).unwrap();
     let settings = settings(10_007);
     let emission = Emission::new(&scene, &settings).unwrap();
@@ -89,7 +91,8 @@ fn photons_together_carry_the_power_of_all_lights() {
     for id in 0..settings.photons {
         sum += emission.photon(id).power.as_dvec3();
     }
-    // By hand: π · 130 · 105 · radiance, 4π · intensity, 2π (1 - cos 30°) · intensity, π · 100 · 200 · emission.
+    // By hand: π · 130 · 105 · radiance, 4π · intensity, 2π (1 - cos 30°) · intensity, π · 100 · 200 ·
+    // emission.
     let pi = std::f64::consts::PI;
     let cone = 2.0 * pi * (1.0 - 0.75_f64.sqrt());
     let red = pi * 13650.0 * 17.0 + 4.0 * pi * 2e4 + cone * 5e4 + pi * 2e4;
@@ -146,7 +149,8 @@ fn russian_roulette_has_the_same_mean() {
 
 #[test]
 fn black_surfaces_end_the_way_and_never_divide_by_zero() {
-    let floor = "\n[surfaces.floor]\nmaterial = \"black\"\nquads = [[[-9, 0, -9], [-9, 0, 9], [9, 0, 9], [9, 0, -9]]]";
+    let floor = "\n[surfaces.floor]\nmaterial = \"black\"\n\
+                 quads = [[[-9, 0, -9], [-9, 0, 9], [9, 0, 9], [9, 0, -9]]]";
     let scene = load(&format!("{BARE}black = {{ lambert = [0, 0, 0] }}{floor}")).unwrap();
     for russian_roulette in [false, true] {
         let (photons, tally) = traced(&scene, &TraceSettings { russian_roulette, ..settings(1000) });

@@ -25,111 +25,134 @@ use super::{Outcome, device};
 
 /// Time the methods, check their answers, and rank them.
 ///
-/// Every case is one full-screen job: "build" fills the intermediate structure, "search" finds the radii in it, "frame"
-/// is both. Times are medians of GPU time queries, and "copies" are the same in passes that read and write each
-/// texel once. A method whose answer is wrong gets no rank.
+/// Every case is one full-screen job: "build" fills the intermediate structure, "search" finds the radii in
+/// it, "frame" is both. Times are medians of GPU time queries, and "copies" are the same in passes that read
+/// and write each texel once. A method whose answer is wrong gets no rank.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
-    /// Time a fixed set of cases, and judge its targets. Of the choices below, `fast` takes --sizes, --build-sizes,
-    /// --rivals and --protocol, `picture` one size and --photons.
+    /// Time a fixed set of cases, and judge its targets. Of the choices below, `fast` takes --sizes,
+    /// --build-sizes, --rivals and --protocol, `picture` one size and --photons.
     #[arg(long, value_enum, conflicts_with_all = FIXED_BY_SUITE)]
+    #[arg(help_heading = "Suite and maps")]
     suite: Option<SuiteName>,
 
-    /// Sizes of synthetic maps: sides, or WIDTHxHEIGHT; files have their own [default for suites: 1024 and 512].
+    /// Sizes of synthetic maps: sides, or WIDTHxHEIGHT; files have their own [default for suites: 1024 and
+    /// 512].
     #[arg(long, value_delimiter = ',', default_value = "64,128,256,512", value_parser = parse_size,
           default_value_ifs([("suite", "fast", "1024"), ("suite", "picture", "512")]))]
+    #[arg(help_heading = "Suite and maps")]
     sizes: Vec<UVec2>,
 
     /// Sizes of maps of --suite fast on which builds alone are timed [default: 64,128,256,512,1024,2048].
     #[arg(long, value_delimiter = ',', value_parser = parse_size, requires = "suite")]
+    #[arg(help_heading = "Suite and maps")]
     build_sizes: Option<Vec<UVec2>>,
 
     /// Photons of --suite picture that are traced and drawn [default: 1e6].
     #[arg(long, value_parser = super::photons::parse_count, requires = "suite", value_name = "NUMBER",
           allow_negative_numbers = true)]
+    #[arg(help_heading = "Suite and maps")]
     photons: Option<u32>,
 
     /// Map to time with, again for more: a kind of `varikernel synth`, or an EXR, PNG or NPY file of counts.
     #[arg(long = "map", value_name = "FILE|KIND", default_value = "caustic")]
+    #[arg(help_heading = "Suite and maps")]
     maps: Vec<PathBuf>,
 
     /// Channel to read of EXR files that have several.
     #[arg(long)]
+    #[arg(help_heading = "Suite and maps")]
     channel: Option<String>,
 
     /// Methods to time.
     #[arg(long, value_enum, value_delimiter = ',', default_value = "brute-force,pyramid,sat")]
+    #[arg(help_heading = "Method")]
     methods: Vec<Method>,
 
     /// Orders of the search.
     #[arg(long, value_enum, value_delimiter = ',', default_value = "forward,binary,bracketed")]
+    #[arg(help_heading = "Method")]
     searches: Vec<Order>,
 
     /// MR: the radius at which a search ends, in pixels.
     #[arg(short = 'r', long, value_delimiter = ',', default_value = "32",
           value_parser = whole(1..=MAX_RADIUS_LIMIT), allow_negative_numbers = true)]
+    #[arg(help_heading = "Question")]
     max_radius: Vec<u32>,
 
     /// n: photons that a box has to hold.
     #[arg(short = 'n', long, value_delimiter = ',', default_value = "25",
           value_parser = whole(1..=u32::MAX), allow_negative_numbers = true)]
+    #[arg(help_heading = "Question")]
     min_photons: Vec<u32>,
 
     /// What counts outside the map.
     #[arg(long, value_enum, value_delimiter = ',', default_value = "scale")]
+    #[arg(help_heading = "Question")]
     edges: Vec<Edges>,
 
     /// Builds of the summed-area table.
     #[arg(long, value_enum, value_delimiter = ',', default_value = "doubling,scan")]
+    #[arg(help_heading = "Method")]
     sat_build: Vec<SatBuild>,
 
     /// Samples a pass when the summed-area table is built by doubling.
     #[arg(long, value_enum, value_delimiter = ',', default_value = "2,4")]
+    #[arg(help_heading = "Method")]
     sat_samples: Vec<SatSamples>,
 
-    /// Numbers in which summed-area tables are kept; each is left out where it is not proved exact (u16 where a box could
-    /// hold 2^16 photons, f16 past 2^11 in all, f32-minus-mean and f32-minus-whole-mean always).
+    /// Numbers in which summed-area tables are kept; each is left out where it is not proved exact (u16 where
+    /// a box could hold 2^16 photons, f16 past 2^11 in all, f32-minus-mean and f32-minus-whole-mean always).
     #[arg(long, value_enum, value_delimiter = ',', default_value = "u32")]
+    #[arg(help_heading = "Method")]
     storage: Vec<Storage>,
 
-    /// Time rivals on the processor as well: an exact scanline search on one core and on all, and a k-d tree of the
-    /// photons (edges zero only).
+    /// Time rivals on the processor as well: an exact scanline search on one core and on all, and a k-d tree
+    /// of the photons (edges zero only).
     #[arg(long)]
+    #[arg(help_heading = "Method")]
     rivals: bool,
 
-    /// How often: 5 sets of up to 100 samples, or the thesis's 5 sets of up to 1000; slow cases take fewer [default: short].
+    /// How often: 5 sets of up to 100 samples, or the thesis's 5 sets of up to 1000; slow cases take fewer
+    /// [default: short].
     #[arg(long, value_enum)]
+    #[arg(help_heading = "Time")]
     protocol: Option<ProtocolName>,
 
-    /// Time to share out among all cases, such as 90s or 5m [default: 60s, 3m for --suite fast, or 10m for the thesis's
-    /// protocol].
+    /// Time to share out among all cases, such as 90s or 5m [default: 60s, 3m for --suite fast, or 10m for
+    /// the thesis's protocol].
     #[arg(long, value_parser = duration, allow_negative_numbers = true)]
+    #[arg(help_heading = "Time")]
     budget: Option<Duration>,
 
     /// Write every sample to this file, anew after each case, or after each round of --suite picture.
     #[arg(long, value_name = "FILE")]
+    #[arg(help_heading = "Input and output")]
     json: Option<PathBuf>,
 
     /// Write a row for each case to this file.
     #[arg(long, value_name = "FILE")]
+    #[arg(help_heading = "Input and output")]
     csv: Option<PathBuf>,
 
-    /// Go on with a file that --json wrote, and keep writing to it; the other options have to be the same again,
-    /// except the budget, which is a new one.
+    /// Go on with a file that --json wrote, and keep writing to it; the other options have to be the same
+    /// again, except the budget, which is a new one.
     #[arg(long, value_name = "FILE", conflicts_with = "json")]
+    #[arg(help_heading = "Input and output")]
     resume: Option<PathBuf>,
 
     /// OpenGL device: auto, egl, egl:INDEX, osmesa, or part of a renderer's name.
     #[arg(long, default_value_t = DeviceChoice::Auto)]
     device: DeviceChoice,
 
-    /// Time nothing, but compare two files that --json wrote: medians differ if all sets of one lie beyond all of the
-    /// other, and by 3 % or more.
+    /// Time nothing, but compare two files that --json wrote: medians differ if all sets of one lie beyond
+    /// all of the other, and by 3 % or more.
     #[arg(long, num_args = 2, value_names = ["OLD.json", "NEW.json"], exclusive = true)]
+    #[arg(help_heading = "Input and output")]
     compare: Option<Vec<PathBuf>>,
 }
 
-/// What a suite leaves no choice of.
+/// Options that a suite fixes.
 const FIXED_BY_SUITE: [&str; 10] = [
     "maps",
     "channel",
@@ -169,7 +192,8 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     }
     if args.photons.is_some() {
         bail!(
-            "--photons is not possible with --suite fast\nhelp: it takes --sizes, --build-sizes, --rivals and --protocol"
+            "--photons is not possible with --suite fast\nhelp: it takes --sizes, --build-sizes, \
+             --rivals and --protocol"
         );
     }
     // What can be refused without timing is refused first.
@@ -238,7 +262,8 @@ fn settings(args: &Args) -> BenchSettings {
     }
 }
 
-/// Kinds in each size, files in their own; small ones first, so that a short budget leaves out the large ones.
+/// Kinds in each size, files in their own; small ones first, so that a short budget leaves out the large
+/// ones.
 fn maps(args: &Args, max_side: u32) -> Result<Vec<MapSource>> {
     let mut maps = Vec::new();
     for map in &args.maps {
@@ -281,7 +306,7 @@ fn progress_bar() -> ProgressBar {
 fn show(bar: &ProgressBar, progress: &Progress) {
     bar.set_length(progress.sets as u64);
     bar.set_position(progress.sets_done as u64);
-    // Sets differ too much in length to tell the end from their number; the budget is what is sure.
+    // Sets differ too much in length to estimate the end from their number; the budget is a sure bound.
     bar.set_prefix(format!("at most {} s left", progress.budget_left.as_secs() + 1));
     bar.set_message(progress.case.clone());
 }

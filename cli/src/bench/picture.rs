@@ -17,7 +17,7 @@ use crate::{Outcome, device, output};
 
 pub(super) fn run(args: &Args) -> Result<Outcome> {
     let &[size] = args.sizes.as_slice() else {
-        bail!("--suite picture is of one size: give one with --sizes")
+        bail!("--suite picture takes one size\nhelp: give one with --sizes")
     };
     for (given, name) in [
         (args.build_sizes.is_some(), "build-sizes"),
@@ -28,7 +28,8 @@ pub(super) fn run(args: &Args) -> Result<Outcome> {
     ] {
         if given {
             bail!(
-                "--{name} is not possible with --suite picture\nhelp: it takes --sizes, --photons, --budget and --json"
+                "--{name} is not possible with --suite picture\nhelp: it takes --sizes, --photons, \
+                 --budget and --json"
             );
         }
     }

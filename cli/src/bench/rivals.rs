@@ -1,4 +1,4 @@
-//! Where a rival on the processor beats the renderer, said under each table.
+//! Where a rival (baseline) on the processor beats the renderer, a line under each table.
 
 use varikernel::settings::Method;
 use varikernel_lab::bench::{Case, Run, Stage};
@@ -15,8 +15,8 @@ pub(super) fn marked(case: &Case) -> String {
     format!("{}{mark}", case.variant)
 }
 
-/// A line for the renderer's best exact frame among `runs`, which share map and question, and one for each rival;
-/// nothing if there are not both.
+/// A line for the renderer's best exact frame among `runs`, which share map and question, and one for each
+/// rival; nothing if there are not both.
 pub(super) fn against_the_renderer(runs: &[&Run]) -> Vec<String> {
     let is_whole = |case: &Case| case.stage == Stage::Frame && case.situation().is_none();
     let right = runs.iter().filter(|run| is_whole(&run.case) && !run.is_wrong());

@@ -1,4 +1,4 @@
-//! Results of timing runs for people, within 80 columns.
+//! Results of timing runs as text, within 80 columns.
 
 use std::path::Path;
 use std::time::Duration;
@@ -18,12 +18,13 @@ const WIDTH: u16 = 80;
 const QUIET: f64 = 0.2;
 /// What the rows of situations are.
 const SITUATIONS: &str = "\
-empty to added: frames of a table by a scan, without photons (as the host knows,\n\
-or unknown to it), with those of a quarter, unchanged, after an edit of 64 x 64\n\
+empty to added: frames of a table by a scan, without photons (declared by the\n\
+host, or not), with those of a quarter, unchanged, after an edit of 64 x 64\n\
 pixels in the middle or the lower left corner, with photons in addition;\n\
 none-masked, half-masked: searches with a mask.";
 
-/// A run for each section (map, size, question), fastest first within each stage; what follows says what to mind.
+/// A run for each section (map, size, question), fastest first within each stage; notes on noise and errors
+/// follow.
 pub(super) fn print_report(report: &Report, json: Option<&Path>) -> Result<()> {
     let protocol = report.settings.protocol;
     let mut facts = device_facts(&report.device);
@@ -113,7 +114,7 @@ fn answer(run: &Run) -> String {
     }
 }
 
-/// What a reader should know before trusting a number.
+/// Notes on how far the numbers can be trusted.
 fn print_warnings(report: &Report) -> Result<()> {
     for run in report.runs.iter().filter(|run| run.is_wrong()) {
         output::print(&format!(
@@ -127,7 +128,7 @@ fn print_warnings(report: &Report) -> Result<()> {
         let cause = if report.device.software {
             ": something else took the processor"
         } else {
-            ", which should not be: trust these rows less"
+            ", which should not happen; these rows are less reliable"
         };
         output::print(&format!(
             "!: has some of the {suspect} in {samples} samples in which query and clock contradict each\n\
@@ -177,7 +178,7 @@ pub(super) fn print_comparison(old: &Report, new: &Report) -> Result<()> {
     if old.device == new.device {
         output::print_facts(&device_facts(&new.device))?;
     } else {
-        output::print("two devices: the ratios tell of them, not of the program alone")?;
+        output::print("two devices: the ratios compare them as well, not the program alone")?;
         for (name, report) in [("old", old), ("new", new)] {
             output::print(&format!("{name}: {} ({})", report.device.renderer, report.device.driver))?;
         }
@@ -200,8 +201,8 @@ pub(super) fn print_comparison(old: &Report, new: &Report) -> Result<()> {
         output::print(&table.trim_fmt())?;
     }
     output::print(
-        "\nfaster, slower: every set's median of one lies beyond every one of the other,\nand the medians differ by \
-         3 % or more; for that, each needs 4 sets.",
+        "\nfaster, slower: every set's median of one lies beyond every one of the other,\n\
+         and the medians differ by 3 % or more; for that, each needs 4 sets.",
     )?;
     for (name, cases) in [("old", &comparison.only_old), ("new", &comparison.only_new)] {
         if !cases.is_empty() {

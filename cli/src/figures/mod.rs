@@ -31,26 +31,30 @@ const TOO_LARGE: u32 = 4;
 
 /// The thesis's Figures 1.2 to 1.4 and ours, with the error of each.
 ///
-/// Draws one scene with the best fixed radius (Figure 1.2), one four times as large (1.3), one pixel (1.4), and
-/// variable ones, from the same photons. Errors are those of indirect light against a reference: the photons of each pixel
-/// alone, averaged over other seeds; they are also told for the caustics alone, where the reference's indirect irradiance is
-/// more than three times its median, and for the other diffuse pixels, the walls; not if the median is 0. The folder gets figures.png, figures.json and each picture.
+/// Draws one scene with the best fixed radius (Figure 1.2), one four times as large (1.3), one pixel (1.4),
+/// and variable ones, from the same photons. Errors are those of indirect light against a reference: the
+/// photons of each pixel alone, averaged over other seeds; they are also given for the caustics alone, where
+/// the reference's indirect irradiance is more than three times its median, and for the other diffuse pixels,
+/// the walls; not if the median is 0. The folder gets figures.png, figures.json and each picture.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
-    #[command(flatten)]
-    source: Source,
-
     /// Folder to write to; made if it is missing.
     #[arg(short, long, default_value = "figures", value_name = "FOLDER")]
+    #[arg(help_heading = "Input and output")]
     output: PathBuf,
+
+    #[command(flatten)]
+    source: Source,
 
     /// Seeds that the reference is averaged over.
     #[arg(long, default_value_t = 32, value_name = "NUMBER", allow_negative_numbers = true)]
     #[arg(value_parser = whole_checked_later(2..=u32::MAX))]
+    #[arg(help_heading = "Photons")]
     reference_seeds: u32,
 
     /// Print one JSON object instead of a table.
     #[arg(long)]
+    #[arg(help_heading = "Input and output")]
     json: bool,
 }
 
@@ -74,7 +78,7 @@ struct FixedRadius {
     regions: RegionErrors,
 }
 
-/// What figures.json says.
+/// The content of figures.json.
 #[derive(Serialize)]
 struct Report {
     version: &'static str,
@@ -83,15 +87,16 @@ struct Report {
     settings: PictureSettings,
     renderer: String,
     reference_seeds: u32,
-    /// How far two halves of the reference's seeds are apart, halved: its own noise. SSIM and FLIP are of the halves.
+    /// How far two halves of the reference's seeds are apart, halved: its own noise. SSIM and FLIP are of the
+    /// halves.
     reference_noise: PictureError,
     /// The same in each region.
     reference_noise_of_regions: RegionErrors,
     figures: Vec<Figure>,
     /// Pixels of the caustics, and of the walls.
     region_pixels: [usize; 2],
-    /// Every fixed radius that was tried: from 1 up to the first that is worse than the one before by both measures, in the
-    /// whole picture and on the walls.
+    /// Every fixed radius that was tried: from 1 up to the first that is worse than the one before by both
+    /// measures, in the whole picture and on the walls.
     fixed: Vec<FixedRadius>,
 }
 
@@ -99,7 +104,7 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     let source = &args.source;
     if args.reference_seeds < 2 {
         bail!(
-            "--reference-seeds {} is not possible: two halves tell the noise, give at least 2",
+            "--reference-seeds {} is not possible: the noise is found from two halves; give at least 2",
             args.reference_seeds
         );
     }

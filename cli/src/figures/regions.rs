@@ -1,4 +1,4 @@
-//! Where a picture's errors are looked at apart: its caustics, and its walls.
+//! Regions whose errors are given separately: a picture's caustics, and its walls.
 
 use serde::Serialize;
 use varikernel::Image;
@@ -14,8 +14,9 @@ pub(super) struct RegionErrors {
     pub(super) walls: Option<LightError>,
 }
 
-/// Pixels on diffuse surfaces, by the reference's indirect irradiance (green): caustics are where it is more than three times
-/// its median, walls are the rest. If the median is 0, as in the dark with a lit spot, nothing is told apart: both are empty.
+/// Pixels on diffuse surfaces, by the reference's indirect irradiance (green): caustics are where it is more
+/// than three times its median, walls are the rest. If the median is 0, as in the dark with a lit spot, there
+/// are no regions: both are empty.
 #[derive(Clone, Debug)]
 pub(super) struct Regions {
     caustic: Vec<usize>,
@@ -23,7 +24,8 @@ pub(super) struct Regions {
 }
 
 impl Regions {
-    /// For indirect irradiance that arrives at surfaces of some albedo, which is 0 where they are not diffuse.
+    /// For indirect irradiance that arrives at surfaces of some albedo, which is 0 where they are not
+    /// diffuse.
     pub(super) fn new(albedo: &Image<[f32; 3]>, irradiance: &Image<[f32; 3]>) -> Self {
         let albedo = albedo.values();
         let mut diffuse: Vec<usize> =
@@ -84,7 +86,7 @@ mod tests {
         let RegionErrors { caustic, walls } = regions.noise([&picture, &reference]);
         assert!((caustic.map_or(0.0, |error| error.rmse) - 1.0).abs() < 1e-12);
         assert!((walls.map_or(0.0, |error| error.rmse) - 0.75_f64.sqrt()).abs() < 1e-12);
-        // Where most is dark, nothing is told apart.
+        // Where most is dark, there are no regions.
         let dark = Regions::new(&grey([0.5; 5]), &grey([0.0, 0.0, 0.0, 1.0, 9.0]));
         assert_eq!(dark.sizes(), [0, 0]);
         assert_eq!(dark.errors(&picture, &reference), RegionErrors { caustic: None, walls: None });

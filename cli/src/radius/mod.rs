@@ -26,11 +26,14 @@ use report::{MapReport, Report, Timing};
 #[derive(Debug, clap::Args)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
 pub(crate) struct Args {
-    /// Photon density map, counts per pixel: EXR (one f16, f32 or u32 channel), PNG (8 or 16-bit grey) or NPY.
+    /// Photon density map, counts per pixel: EXR (one f16, f32 or u32 channel), PNG (8 or 16-bit grey) or
+    /// NPY.
     map: PathBuf,
 
-    /// Radius map to write: .exr (u32 channel "radius", settings as attributes), .npy (u32), or .png (a picture).
+    /// Radius map to write: .exr (u32 channel "radius", settings as attributes), .npy (u32), or .png (a
+    /// picture).
     #[arg(short, long, value_name = "FILE")]
+    #[arg(help_heading = "Input and output")]
     output: PathBuf,
 
     #[command(flatten)]
@@ -38,28 +41,34 @@ pub(crate) struct Args {
 
     /// Compute even where sums may round or wrap, to see how wrong it gets.
     #[arg(long)]
+    #[arg(help_heading = "Exactness")]
     allow_inexact: bool,
 
     /// Compare with the definition on the CPU; exit 1 on a difference.
     #[arg(long)]
+    #[arg(help_heading = "Exactness")]
     verify: bool,
 
-    /// Prove the result on the GPU: each radius by two boxes, each table entry by the counts; exit 1 if something is not
-    /// proved. For the summed-area table.
+    /// Prove the result on the GPU: each radius by two boxes, each table entry by the counts; exit 1 if
+    /// something is not proved. For the summed-area table.
     #[arg(long, conflicts_with_all = ["allow_inexact", "mask"])]
+    #[arg(help_heading = "Exactness")]
     certify: bool,
 
     /// Also write a map that is 1 where MR ended the search with too few photons, else 0.
     #[arg(long, value_name = "FILE")]
+    #[arg(help_heading = "Input and output")]
     limited_mask: Option<PathBuf>,
 
-    /// Map of the pixels that need a radius: those that are 0 in it get 0, and cost next to nothing. EXR, NPY, or any PNG,
-    /// 1 bit and colours too: black pixels are 0, and so are wholly transparent ones.
+    /// Map of the pixels that need a radius: those that are 0 in it get 0, and cost next to nothing. EXR,
+    /// NPY, or any PNG, 1 bit and colours too: black pixels are 0, and so are wholly transparent ones.
     #[arg(long, value_name = "FILE")]
+    #[arg(help_heading = "Input and output")]
     mask: Option<PathBuf>,
 
     /// Channel to read if the EXR has several.
     #[arg(long, value_name = "NAME")]
+    #[arg(help_heading = "Input and output")]
     channel: Option<String>,
 
     /// OpenGL device: auto, egl, egl:INDEX, osmesa, or part of a renderer's name.
@@ -68,6 +77,7 @@ pub(crate) struct Args {
 
     /// Print one JSON object instead of a table.
     #[arg(long)]
+    #[arg(help_heading = "Input and output")]
     json: bool,
 }
 
@@ -185,14 +195,15 @@ fn read_mask(path: &Path, counts: &Image<u32>) -> Result<Image<u8>> {
     Ok(mask)
 }
 
-/// An error of the library, with the option to change and the file at fault.
+/// An error of the library, with the option to change and the file concerned.
 fn in_words_of_options(error: Error, map: &Path) -> anyhow::Error {
     match error {
         Error::Setting { name, value, reason } => {
             anyhow!("--{} {value} is not possible: {reason}", name.replace('_', "-"))
         }
         Error::Inexact { reason, remedy } => anyhow!(
-            "{}: the result would not be exact: {reason}\nhelp: {remedy}, or add --allow-inexact to see how wrong it gets",
+            "{}: the result would not be exact: {reason}\nhelp: {remedy}, or add --allow-inexact to see \
+             how wrong it gets",
             map.display()
         ),
         other => other.into(),
@@ -227,7 +238,7 @@ fn check_fits(args: &Args, counts: &Image<u32>, device: &DeviceInfo) -> Result<(
     Ok(())
 }
 
-/// What the arguments ask for; where the planner may choose, its choice without a map.
+/// The settings by the arguments; where the planner may choose, its choice without a map.
 fn settings(args: &Args) -> Settings {
     let exactness = if args.allow_inexact { Exactness::Waived } else { Exactness::Required };
     Settings { exactness, limited_mask: true, masked: args.mask.is_some(), ..args.method.settings() }

@@ -1,4 +1,4 @@
-//! What `varikernel radius` answers: a table for people, or one JSON object.
+//! The answer of `varikernel radius`: a table, or one JSON object.
 
 use std::path::Path;
 

@@ -41,7 +41,7 @@ pub(super) fn attributes(args: &Args, scene: &str) -> Vec<Attribute> {
     attributes
 }
 
-/// What made a reference of `seeds` seeds so far: those after the seed that is told.
+/// What made a reference of `seeds` seeds so far: those after the seed that is given.
 pub(super) fn reference_attributes(args: &Args, scene: &str, seeds: u32) -> Vec<Attribute> {
     let mut attributes = common(args, scene);
     attributes.push(Attribute::integer("varikernel.reference_seeds", seeds));

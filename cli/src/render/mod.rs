@@ -25,48 +25,59 @@ use super::{Outcome, device, output};
 
 /// Render a scene by photons whose kernels fit their density.
 ///
-/// Direct light is traced with soft shadows; all other light is photons, drawn over as many pixels as it takes to hold n of
-/// them. What is seen in mirrors and through glass is gathered around each place that is seen there.
+/// Direct light is traced with soft shadows; all other light is photons, drawn over as many pixels as it
+/// takes to hold n of them. What is seen in mirrors and through glass is gathered around each place that is
+/// seen there.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
+    /// Picture to write: .exr (linear, with layers), or .png (tone-mapped).
+    #[arg(short, long, value_name = "FILE")]
+    #[arg(help_heading = "Input and output")]
+    output: PathBuf,
+
     #[command(flatten)]
     pub(super) source: Source,
 
-    /// Picture to write: .exr (linear, with layers), or .png (tone-mapped).
-    #[arg(short, long, value_name = "FILE")]
-    output: PathBuf,
-
     /// Width of the kernels: `variable`, or `fixed:PIXELS` for the same everywhere.
     #[arg(long, default_value = "variable", value_parser = parse_radius, value_name = "RADIUS")]
+    #[arg(help_heading = "Kernels")]
     radius: RadiusChoice,
 
     /// Let each pixel gather the photons around it, instead of drawing each photon over the pixels around it.
     #[arg(long)]
+    #[arg(help_heading = "Kernels")]
     gather: bool,
 
     /// With --gather: take (c - 1) / c of what c photons give, as a radius that ends at a photon asks for.
     #[arg(long, requires = "gather")]
+    #[arg(help_heading = "Kernels")]
     count_correction: bool,
 
-    /// Make a reference: each pixel keeps its own photons only, averaged over this many seeds, saved as it goes. The seeds are
-    /// those after --seed, so that it holds no photon of the picture that it is compared with. Nothing is spread, so that
-    /// options about kernels are refused.
-    #[arg(long, value_name = "SEEDS", num_args = 0..=1, default_missing_value = "16", allow_negative_numbers = true)]
+    /// Make a reference: each pixel keeps its own photons only, averaged over this many seeds, saved as it
+    /// goes. The seeds are those after --seed, so that it holds no photon of the picture that it is compared
+    /// with. Nothing is spread, so that options about kernels are refused.
+    #[arg(long, value_name = "SEEDS", num_args = 0..=1, default_missing_value = "16")]
+    #[arg(allow_negative_numbers = true)]
     #[arg(value_parser = whole_checked_later(1..=u32::MAX))]
     #[arg(conflicts_with_all = ["gather", "radius", "first_bounce", "kernel", "min_photons", "max_radius"])]
+    #[arg(help_heading = "Photons")]
     reference: Option<u32>,
 
-    /// How direct light finds what is in its way: by shadow rays, or by shadow maps around --light-samples places on each
-    /// area light (thesis 2.2).
+    /// How direct light finds what is in its way: by shadow rays, or by shadow maps around --light-samples
+    /// places on each area light (thesis 2.2).
     #[arg(long, value_enum, default_value_t = DirectLight::Traced)]
+    #[arg(help_heading = "Direct light")]
     direct: DirectLight,
 
-    /// How photons find what they meet first: by a ray each, or from maps rasterised from the lights (thesis 2.6.1).
+    /// How photons find what they meet first: by a ray each, or from maps rasterised from the lights (thesis
+    /// 2.6.1).
     #[arg(long, value_enum, default_value_t = FirstBounce::Rays)]
+    #[arg(help_heading = "Photons")]
     first_bounce: FirstBounce,
 
     /// Print one JSON object instead of a table.
     #[arg(long)]
+    #[arg(help_heading = "Input and output")]
     json: bool,
 }
 

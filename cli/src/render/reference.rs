@@ -17,7 +17,7 @@ use crate::{Outcome, output};
 /// A reference that takes long is saved as often as this.
 const SAVE_EVERY: Duration = Duration::from_secs(20);
 
-/// Averages seeds, and writes the picture again where the last time is long ago.
+/// Averages seeds, and writes the picture from time to time.
 pub(super) fn render(
     args: &Args,
     gl: &Gl,
@@ -26,7 +26,7 @@ pub(super) fn render(
     seeds: u32,
 ) -> Result<Outcome> {
     if seeds == 0 {
-        bail!("--reference 0 is not possible: a mean takes at least 1 seed");
+        bail!("--reference 0 is not possible: give at least 1 seed");
     }
     let trace = args.source.trace();
     let bar = Bar::new();
@@ -36,7 +36,7 @@ pub(super) fn render(
         write(args, &reference.picture()?, &reference_attributes(args, &scene.title, seeds))
     };
     for seed in 0..seeds {
-        // The seed itself is that of the picture, which a reference must not know.
+        // The seed itself is that of the picture, whose photons a reference must not hold.
         let trace = TraceSettings { seed: trace.seed.wrapping_add(1 + u64::from(seed)), ..trace };
         let mut show = |Progress { done, .. }: Progress| {
             let done = (f64::from(seed) + done) / f64::from(seeds);

@@ -1,4 +1,4 @@
-//! What `varikernel render` answers: a table for people, or one JSON object.
+//! The answer of `varikernel render`: a table, or one JSON object.
 
 use std::path::Path;
 

@@ -1,18 +1,22 @@
 //! The options that say what is rendered, and with how many photons.
 
 use std::path::PathBuf;
+use std::sync::LazyLock;
 
 use anyhow::{Result, bail};
 use glam::UVec2;
 use varikernel::context::DeviceChoice;
 use varikernel::image::ToneMap;
 use varikernel::photon::TraceSettings;
-use varikernel::settings::{Kernel, PictureSettings};
+use varikernel::settings::{Kernel, MAX_PICTURE_RADIUS, PictureSettings};
 use varikernel::{Error, Image};
 
 use crate::numbers::{fraction, whole, whole_checked_later};
 use crate::photons::parse_count;
 use crate::synth::parse_size;
+
+static MAX_RADIUS_HELP: LazyLock<String> =
+    LazyLock::new(|| format!("MR: the largest radius, in pixels, 1 to {MAX_PICTURE_RADIUS}"));
 
 /// What is rendered, and with how many photons; `figures` takes the same.
 #[derive(Debug, clap::Args)]
@@ -23,42 +27,51 @@ pub(crate) struct Source {
 
     /// Columns and rows.
     #[arg(long, default_value = "512x512", value_parser = parse_size, value_name = "WIDTHxHEIGHT")]
+    #[arg(help_heading = "Picture")]
     pub(crate) size: UVec2,
 
     /// Photons that leave the lights; 1e6 is a million.
-    #[arg(long, default_value = "1e6", value_parser = parse_count, value_name = "NUMBER", allow_negative_numbers = true)]
+    #[arg(long, default_value = "1e6", value_name = "NUMBER")]
+    #[arg(value_parser = parse_count, allow_negative_numbers = true)]
+    #[arg(help_heading = "Photons")]
     pub(crate) photons: u32,
 
     /// Diffuse landings after which a photon is followed no further.
     #[arg(long, default_value_t = 8, value_name = "NUMBER", value_parser = whole_checked_later(1..=u32::MAX))]
     #[arg(allow_negative_numbers = true)]
+    #[arg(help_heading = "Photons")]
     pub(crate) bounces: u32,
 
     /// A whole number; the same seed gives the same picture.
     #[arg(long, default_value_t = 1, value_parser = whole(0..=u64::MAX), allow_negative_numbers = true)]
+    #[arg(help_heading = "Photons")]
     pub(crate) seed: u64,
 
     /// n: photons that a kernel has to hold, at least 1.
     #[arg(short = 'n', long, default_value_t = 400, value_name = "N", allow_negative_numbers = true)]
     #[arg(value_parser = whole_checked_later(1..=u32::MAX))]
+    #[arg(help_heading = "Kernels")]
     pub(crate) min_photons: u32,
 
-    /// MR: the largest radius, in pixels, 1 to 96.
-    #[arg(short = 'r', long, default_value_t = 64, value_name = "MR", allow_negative_numbers = true)]
-    #[arg(value_parser = whole_checked_later(1..=96_u32))]
+    #[arg(short = 'r', long, help = MAX_RADIUS_HELP.as_str(), default_value_t = 64, value_name = "MR")]
+    #[arg(value_parser = whole_checked_later(1..=MAX_PICTURE_RADIUS), allow_negative_numbers = true)]
+    #[arg(help_heading = "Kernels")]
     pub(crate) max_radius: u32,
 
     /// Falloff of a kernel from its middle to its edge.
     #[arg(long, value_enum, default_value_t = Kernel::Silverman)]
+    #[arg(help_heading = "Kernels")]
     pub(crate) kernel: Kernel,
 
     /// Shadow rays for each pixel and area light; places with shadow maps on each, with --direct shadow-map.
     #[arg(long, default_value_t = 16, value_name = "NUMBER", allow_negative_numbers = true)]
     #[arg(value_parser = whole_checked_later(1..=u32::MAX))]
+    #[arg(help_heading = "Direct light")]
     pub(crate) light_samples: u32,
 
     /// Brightness of a PNG, in stops: each doubles the light [default: what suits the picture].
     #[arg(long, value_name = "STOPS", value_parser = fraction::<f32>("-1.5"), allow_negative_numbers = true)]
+    #[arg(help_heading = "Picture")]
     pub(crate) exposure: Option<f32>,
 
     /// OpenGL device: auto, egl, egl:INDEX, osmesa, or part of a renderer's name.
@@ -100,7 +113,7 @@ impl Source {
     }
 }
 
-/// The words of `error` for a setting that an option gave.
+/// The message of `error` for a setting that an option gave.
 pub(crate) fn in_words_of_options(error: Error) -> anyhow::Error {
     match error {
         Error::Setting { name, value, reason } => {

@@ -17,7 +17,8 @@ use super::saving::{Autosave, Resume, how_to_go_on};
 use super::share_bar::ShareBar;
 use super::{Outcome, device, output};
 
-/// How often a renderer computes the same maps, to see that it always gives the same bits; and in a quick run.
+/// How often a renderer computes the same maps, to see that it always gives the same bits; and in a quick
+/// run.
 const TIMES: [u32; 2] = [100, 20];
 
 /// The part of the time that everything on one device takes.
@@ -25,9 +26,10 @@ const MAPS_SHARE: f64 = 0.9;
 
 /// Put numbers under stress: where sums in each of them break, and whether the promises about exactness hold.
 ///
-/// Every number in which sums can be kept meets maps of growing totals and unkind shapes, the definition beside it; then
-/// blended counts and kernels, and the order of the photons, all on one device; then a few maps on every renderer and number
-/// of threads found here. Writes a folder with stress.csv (a line a row) and stress.json. Exit code 1 if a promise is broken.
+/// Every number in which sums can be kept meets maps of growing totals and adverse shapes, the definition
+/// beside it; then blended counts and kernels, and the order of the photons, all on one device; then a few
+/// maps on every renderer and number of threads found here. Writes a folder with stress.csv (a line a row)
+/// and stress.json. Exit code 1 if a promise is broken.
 #[derive(Debug, clap::Args)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
 pub(crate) struct Args {
@@ -39,8 +41,8 @@ pub(crate) struct Args {
     #[arg(long, conflicts_with = "full")]
     quick: bool,
 
-    /// Every side up to 4096, density, shape and number, and a few maps of 8192 x 8192 where the device has such textures:
-    /// for hours on a software renderer.
+    /// Every side up to 4096, density, shape and number, and a few maps of 8192 x 8192 where the device has
+    /// such textures: for hours on a software renderer.
     #[arg(long)]
     full: bool,
 
@@ -52,12 +54,13 @@ pub(crate) struct Args {
     #[arg(long)]
     json: bool,
 
-    /// Run one of the numbers with a misprint of the thesis, to see that it is told.
+    /// Run one of the numbers with a misprint of the thesis, to check that it is reported.
     #[arg(long, hide = true)]
     plant_fault: bool,
 
     /// Print the hashes of the maps that all renderers compute, so many times, and nothing else.
-    #[arg(long, hide = true, value_name = "TIMES", value_parser = whole(1..=u32::MAX), allow_negative_numbers = true)]
+    #[arg(long, hide = true, value_name = "TIMES")]
+    #[arg(value_parser = whole(1..=u32::MAX), allow_negative_numbers = true)]
     bits: Option<u32>,
 }
 

@@ -1,4 +1,5 @@
-//! The same maps on every renderer found here, each in a process of its own, since Mesa reads its variables once.
+//! The same maps on every renderer found here, each in a process of its own, since Mesa reads its variables
+//! once.
 
 use std::env;
 use std::process::Command;
@@ -11,7 +12,8 @@ use varikernel_lab::stress::{Bits, Found, Renderer};
 
 use crate::device;
 
-/// Renderers of Mesa that have to be asked for, and how: its interpreter, and Zink, which draws through Vulkan (here lavapipe).
+/// Renderers of Mesa that have to be chosen by variables, and how: its interpreter, and Zink, which draws
+/// through Vulkan (here lavapipe).
 const OTHERS: [(&str, &[(&str, &str)]); 2] = [
     ("softpipe", &[("GALLIUM_DRIVER", "softpipe")]),
     ("zink", &[("GALLIUM_DRIVER", "zink"), ("LIBGL_ALWAYS_SOFTWARE", "true")]),
@@ -21,7 +23,7 @@ const OTHERS: [(&str, &[(&str, &str)]); 2] = [
 const THREADS: [&str; 3] = ["1", "2", "8"];
 
 /// The same maps here, on every other device, on Mesa's other renderers, and with other numbers of threads.
-/// `show` is told which is next, and the done share.
+/// `show` gets the next one, and the share of the work that is done.
 pub(super) fn all(gl: &Gl, times: u32, show: &mut dyn FnMut(&str, f64)) -> Result<Vec<Renderer>> {
     let (candidates, missing) = context::candidates();
     #[expect(clippy::cast_precision_loss, reason = "a few renderers")]
@@ -50,14 +52,15 @@ pub(super) fn all(gl: &Gl, times: u32, show: &mut dyn FnMut(&str, f64)) -> Resul
     for threads in THREADS {
         let name = format!("threads-{threads}");
         tell(&name);
-        // The variable has no say on hardware, and llvmpipe is asked for by name.
+        // The variable has no effect on hardware, and llvmpipe is chosen by name.
         let variables = [("GALLIUM_DRIVER", "llvmpipe"), ("LP_NUM_THREADS", threads)];
         all.push(Renderer { name, found: in_child("llvmpipe", &variables, times), of_threads: true });
     }
     Ok(all)
 }
 
-/// What a child prints: only where no context is to be had the device is not there; all else that goes wrong is an error.
+/// What a child prints: only where no context is to be had the device is not there; all else that goes wrong
+/// is an error.
 pub(super) fn found_here(device: &DeviceChoice, times: u32) -> Result<Found> {
     match device::open(device) {
         Ok(gl) => Ok(Found::Ran(Bits::of(&gl, times)?)),

@@ -1,4 +1,4 @@
-//! What a stress run found, for people: promises, numbers, renderers.
+//! The results of a stress run as text: promises, numbers, renderers.
 
 use anyhow::Result;
 use varikernel_lab::stress::{Found, Judged, Renderer, Report, Row, Verdict};

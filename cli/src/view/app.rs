@@ -1,4 +1,5 @@
-//! The window's life: opened once, drawn when something changes or the picture gets better, closed by a key or its button.
+//! The window's life: opened once, drawn when something changes or the picture gets better, closed by a key
+//! or its button.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -26,7 +27,7 @@ use super::{keys, middle, panels, passes};
 /// Frames that egui takes to lay everything out after a change.
 const SETTLED: u32 = 3;
 
-/// What the arguments ask for.
+/// The settings by the arguments.
 pub(super) struct Wishes {
     pub(super) choices: Choices,
     pub(super) window: [u32; 2],
@@ -45,7 +46,8 @@ pub(super) struct App {
     failure: Option<anyhow::Error>,
 }
 
-/// Everything that lives as long as the window; fields are dropped in this order, so that the context goes last.
+/// Everything that lives as long as the window; fields are dropped in this order, so that the context goes
+/// last.
 struct Running {
     state: State,
     /// What times the passes of a step.
@@ -53,9 +55,9 @@ struct Running {
     egui: egui_winit::State,
     waiting: Waiting,
     painter: egui_glow::Painter,
-    /// The canvas, as egui knows it; nothing before the first frame.
+    /// The canvas as a texture of egui; nothing before the first frame.
     canvas: Option<TextureId>,
-    /// When egui wants to be drawn again, if nothing happens before.
+    /// When egui is due to be drawn again, if nothing happens before.
     wake: Option<Instant>,
     /// Frames since the picture was done.
     settled: u32,
@@ -181,8 +183,8 @@ impl Running {
 
     /// One step of the picture, and the window drawn.
     ///
-    /// Three take turns with OpenGL's state: the library puts back what it touches, the canvas and egui set all that they
-    /// need and put nothing back. So none of them may rely on what it left behind.
+    /// Three take turns with OpenGL's state: the library puts back what it touches, the canvas and egui set
+    /// all that they need and put nothing back. So none of them may rely on the state that it left.
     fn frame(&mut self) -> Result<()> {
         let begun = Instant::now();
         let size = self.window.size();
@@ -235,7 +237,7 @@ impl Running {
             self.state.quits = true;
         }
         self.window.show()?;
-        // Told after the frame is shown, so that who reads the title sees what it says.
+        // Set after the frame is shown, so that the title describes what is seen.
         let title = self.state.title();
         if title != self.title {
             self.window.window().set_title(&title);
@@ -248,7 +250,8 @@ impl Running {
     fn schedule(&mut self, wait: Duration, stepped: bool, begun: Instant) {
         let state = &mut self.state;
         if stepped {
-            // What OpenGL still has to do is done when the frame is shown: with a software renderer, by this thread.
+            // What OpenGL still has to do is done when the frame is shown: with a software renderer, by this
+            // thread.
             let whole = begun.elapsed();
             let mut stages = state.engine.times();
             // Of a GPU, those of a frame or a few before.

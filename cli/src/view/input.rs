@@ -1,4 +1,4 @@
-//! What happened since the last frame, in portions that egui tells apart.
+//! What happened since the last frame, in portions that egui can distinguish.
 
 use egui::{Event, RawInput};
 
@@ -9,8 +9,8 @@ pub(super) struct Waiting(Vec<Event>);
 impl Waiting {
     /// Leaves in `input` what one frame takes: all up to the first change of a mouse button.
     ///
-    /// egui knows the mouse as it is at the end of a frame. Where a frame takes longer than a click, it would miss that
-    /// a button was down, or see a slider dragged to where the mouse went after it was let go.
+    /// egui sees the mouse as it is at the end of a frame. Where a frame takes longer than a click, it would
+    /// miss that a button was down, or drag a slider to where the mouse went after the button was released.
     pub(super) fn divide(&mut self, input: &mut RawInput) {
         self.0.append(&mut input.events);
         let is_button = |event: &Event| matches!(event, Event::PointerButton { .. });

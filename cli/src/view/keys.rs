@@ -1,4 +1,4 @@
-//! Keys, and a page that tells them.
+//! Keys, and a page that lists them.
 
 use egui::{Context, Grid, Key, Modifiers, RichText, Ui};
 
@@ -21,7 +21,7 @@ pub(super) const KEYS: [(&str, &str); 12] = [
     ("Q", "quit"),
 ];
 
-/// Does what the keys of this frame ask for, unless somebody types.
+/// Handles the keys of this frame, unless text is being typed.
 pub(super) fn handle(context: &Context, state: &mut State) {
     if context.text_edit_focused() {
         return;

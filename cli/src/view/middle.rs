@@ -215,7 +215,7 @@ fn colour_bar(bar: Rect) -> Mesh {
     mesh
 }
 
-/// What was told last, over the picture.
+/// The last message, over the picture.
 pub(super) fn message(ui: &Ui, state: &mut State) {
     let Some(message) = &state.message else { return };
     let (text, is_error) = (message.text.clone(), message.is_error);

@@ -54,74 +54,92 @@ Without a display, `varikernel render` and `varikernel radius` make the same fil
 
 /// Open a window on a scene or a map: the picture live, every stage of it, and all settings.
 ///
-/// Photons are traced frame after frame while nothing moves; with a software renderer, fewer in each, so that the window answers.
+/// Photons are traced frame after frame while nothing moves; with a software renderer, fewer in each, so that
+/// the window answers.
 #[derive(Debug, clap::Args)]
 #[command(after_help = AFTER_HELP)]
 pub(crate) struct Args {
-    /// A scene file, one of cornell-glass, cornell-boxes, cornell-empty, mirror-ring, water, a map (EXR, PNG or NPY, counts per
-    /// pixel), or settings that the window saved (JSON).
+    /// A scene file, one of cornell-glass, cornell-boxes, cornell-empty, mirror-ring, water, a map (EXR, PNG
+    /// or NPY, counts per pixel), or settings that the window saved (JSON).
     #[arg(default_value = "cornell-glass", value_name = "SCENE|MAP")]
     source: PathBuf,
 
     /// Columns and rows of a scene's picture.
     #[arg(long, default_value = "512x512", value_parser = parse_size, value_name = "WIDTHxHEIGHT")]
+    #[arg(help_heading = "Picture")]
     size: UVec2,
 
     /// Columns and rows of the window.
     #[arg(long, default_value = "1340x830", value_parser = parse_size, value_name = "WIDTHxHEIGHT")]
+    #[arg(help_heading = "Window")]
     window: UVec2,
 
     /// n: photons that a kernel or box has to hold [default: 400 for scenes, 25 for maps].
-    #[arg(short = 'n', long, value_name = "N", value_parser = whole(1..=u32::MAX), allow_negative_numbers = true)]
+    #[arg(short = 'n', long, value_name = "N")]
+    #[arg(value_parser = whole(1..=u32::MAX), allow_negative_numbers = true)]
+    #[arg(help_heading = "Kernels")]
     min_photons: Option<u32>,
 
     /// MR: the largest radius, in pixels [default: 64 for scenes, 32 for maps].
     #[arg(short = 'r', long, value_name = "MR", value_parser = whole(1..=MAX_RADIUS_LIMIT))]
     #[arg(allow_negative_numbers = true)]
+    #[arg(help_heading = "Kernels")]
     max_radius: Option<u32>,
 
     /// Width of the kernels: `variable`, or `fixed:PIXELS` for the same everywhere.
     #[arg(long, default_value = "variable", value_parser = parse_radius, value_name = "RADIUS")]
+    #[arg(help_heading = "Kernels")]
     radius: RadiusChoice,
 
     /// Falloff of a kernel from its middle to its edge.
     #[arg(long, value_enum, default_value_t = Kernel::Silverman)]
+    #[arg(help_heading = "Kernels")]
     kernel: Kernel,
 
     /// Photons of each frame [default: as many as frames of 100 ms have time for].
     #[arg(long, value_parser = parse_count, value_name = "NUMBER", allow_negative_numbers = true)]
+    #[arg(help_heading = "Photons")]
     photons_per_frame: Option<u32>,
 
     /// A whole number; the same seed and photons of each frame give the same picture.
     #[arg(long, default_value_t = 1, value_parser = whole(0..=u64::MAX), allow_negative_numbers = true)]
+    #[arg(help_heading = "Photons")]
     seed: u64,
 
     /// Brightness, in stops: each doubles the light [default: what suits the picture].
     #[arg(long, value_name = "STOPS", value_parser = fraction::<f32>("-1.5"), allow_negative_numbers = true)]
+    #[arg(help_heading = "Picture")]
     exposure: Option<f32>,
 
     /// What is shown first.
     #[arg(long, value_enum)]
+    #[arg(help_heading = "Window")]
     view: Option<View>,
 
     /// What is shown beside it.
     #[arg(long, value_enum, value_name = "VIEW")]
+    #[arg(help_heading = "Window")]
     beside: Option<View>,
 
     /// Where the line between the two is, as a share of the picture's width.
-    #[arg(long, default_value_t = 0.5, value_parser = parse_share, value_name = "SHARE", allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 0.5, value_name = "SHARE")]
+    #[arg(value_parser = parse_share, allow_negative_numbers = true)]
+    #[arg(help_heading = "Window")]
     split: f32,
 
     /// A picture of the same size that errors are taken against: EXR or PNG.
     #[arg(long, value_name = "FILE")]
+    #[arg(help_heading = "Window")]
     reference: Option<PathBuf>,
 
     /// Stop after so many frames' photons.
     #[arg(long, value_name = "NUMBER", value_parser = whole(1..=u32::MAX), allow_negative_numbers = true)]
+    #[arg(help_heading = "Window")]
     frames: Option<u32>,
 
     /// Save the window as PNG after --frames, and quit.
     #[arg(long, value_name = "FILE", requires = "frames")]
+    #[arg(help_heading = "Window")]
     screenshot: Option<PathBuf>,
 }
 
@@ -136,11 +154,12 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
         }
         check_writable(path)?;
     }
-    // A file that is not there needs no window to be told.
+    // A file that is not there is reported before a window opens.
     if !is_settings(&args.source) {
         check_source(Path::new(&choices.source))?;
     }
-    let headless = "a window needs a display; `varikernel render` and `varikernel radius` make the same files without one";
+    let headless = "a window needs a display; `varikernel render` and `varikernel radius` make the same \
+                    files without one";
     device::check_for_crashes()?;
     let event_loop = window::event_loop().context(headless)?;
     let wishes = Wishes {

@@ -1,4 +1,4 @@
-//! The panels: on the left what may be chosen, on the right what comes of it.
+//! The panels: settings on the left, results on the right.
 
 use clap::ValueEnum;
 use egui::{Button, Color32, ComboBox, DragValue, RichText, ScrollArea, Slider, TextEdit, Ui};

@@ -1,8 +1,9 @@
-//! The passes of a step as the stages that a reader knows.
+//! The passes of a step, grouped into stages.
 
 use std::time::Duration;
 
-/// Stages, each with how the labels of its passes begin; what is not there is part of the radii, whose passes are many.
+/// Stages, each with how the labels of its passes begin; what is not there is part of the radii, whose passes
+/// are many.
 const STAGES: [(&str, &[&str]); 5] = [
     ("surfaces", &["surfaces"]),
     ("density", &["density"]),

@@ -1,4 +1,4 @@
-//! What the pixel under the mouse holds, in words.
+//! The values of the pixel under the mouse, as text.
 
 use egui::{Grid, RichText, Ui};
 

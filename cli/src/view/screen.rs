@@ -1,4 +1,5 @@
-//! From maps to the window: one view, or two beside a line, at the size of the place that the window has for them.
+//! From maps to the window: one view, or two beside a line, at the size of the place that the window has for
+//! them.
 
 use anyhow::Result;
 use varikernel::context::window::{Canvas, Input, Picture, Uniform};
@@ -99,7 +100,8 @@ impl Screen {
     ) -> Result<glow::Texture> {
         let (colour_a, whole_a) = a.maps.of(a.view);
         let (colour_b, whole_b) = b.maps.of(b.view);
-        // Values of pixels are shown as they are, pictures smoothly, unless they are enlarged so far that pixels matter.
+        // Values of pixels are shown as they are, pictures smoothly, unless they are enlarged so far that
+        // pixels matter.
         let smooth = |view: View| view.number() == 0 && place.scale < 4.0;
         let input = |name, texture, smooth| Input { name, texture, smooth };
         let reference = self.reference.as_ref();
@@ -133,7 +135,7 @@ impl Screen {
 /// Maps as they were at a moment, kept while others are made.
 pub(super) struct Snapshot {
     maps: Maps,
-    /// What made them, for people.
+    /// What made them, to show.
     pub(super) words: String,
     _pictures: Vec<Picture>,
 }

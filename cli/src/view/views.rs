@@ -4,7 +4,7 @@ use glow::Texture;
 use varikernel::glam::UVec2;
 use varikernel::glow;
 
-/// A stage's result as people look at it.
+/// A stage's result as it is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub(super) enum View {
     /// Direct and indirect light, tone-mapped.
@@ -46,7 +46,7 @@ impl View {
         }
     }
 
-    /// For a person who waits with the mouse on its name.
+    /// The tool tip of its name.
     pub(super) fn words(self) -> &'static str {
         match self {
             Self::Picture => "Direct and indirect light, tone-mapped",
@@ -142,8 +142,8 @@ pub(super) fn place(value: f32, [low, high]: [f32; 2]) -> f32 {
     ((value.clamp(low, high) + 1.0) / (low + 1.0)).ln() / ((high + 1.0) / (low + 1.0)).ln()
 }
 
-/// Values to be written on a legend's bar: its ends, and of 1, 2, 5, 10 and so on those that leave `room` to their neighbours,
-/// as a share of the bar.
+/// Values to be written on a legend's bar: its ends, and of 1, 2, 5, 10 and so on those that leave `room` to
+/// their neighbours, as a share of the bar.
 pub(super) fn ticks(range: [f32; 2], room: f32) -> Vec<f32> {
     let mut ticks = vec![range[0]];
     let steps = (0..10).flat_map(|power| [1.0, 2.0, 5.0].map(|factor| factor * 10.0_f32.powi(power)));

@@ -115,7 +115,7 @@ fn headers_that_claim_more_than_memory_holds() {
         &["claims 1000000000 x 1000000000"],
     );
     refuses_map("a.png", &png_header(1_000_000_000, 1_000_000_000, 0), &["claims 1000000000 x 1000000000"]);
-    // What stands in the way depends on the `exr` crate: the size, or blocks that such a size would have.
+    // The error depends on the `exr` crate: the size, or blocks that such a size would have.
     let mut bytes = exr(&[("n", &[1.0; 5])]);
     let window = [0, 0, 4, 0].map(i32::to_le_bytes).concat();
     let claim = [0, 0, 999_999_999, 999_999_999].map(i32::to_le_bytes).concat();
@@ -225,7 +225,8 @@ fn outputs_that_can_not_be_written() {
 #[test]
 fn meshes_say_what_is_wrong_with_them_and_what_is_left_out() {
     let place = workplace();
-    let scene = "[camera]\nposition = [0, 0, 3]\ndirection = [0, 0, -1]\nup = [0, 1, 0]\nvertical_fov_degrees = 60\n\
+    let scene = "[camera]\nposition = [0, 0, 3]\ndirection = [0, 0, -1]\nup = [0, 1, 0]\n\
+                 vertical_fov_degrees = 60\n\
                  [lights.lamp]\npoint = [0, 0, 3]\nintensity = [30, 30, 30]\n\
                  [surfaces.square]\nmesh = { file = \"./a.obj\" }\n";
     place.put("s.toml", scene.as_bytes());

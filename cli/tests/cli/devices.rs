@@ -1,4 +1,4 @@
-//! `devices` and `--device`: what is there, and what is said when nothing is: the reason, and the remedy that fits it.
+//! `devices` and `--device`: what is there, and the reason and the remedy when nothing is.
 
 use serde_json::Value;
 
@@ -21,7 +21,8 @@ fn place() -> Workplace {
     place
 }
 
-/// What a run under `variables` prints to stdout and stderr; it has an exit code, so that no signal ended it, and did not panic.
+/// What a run under `variables` prints to stdout and stderr; it has an exit code, so that no signal ended it,
+/// and did not panic.
 #[track_caller]
 fn with(place: &Workplace, arguments: &str, variables: &[(&str, &str)], code: i32) -> [String; 2] {
     let run = place.command(arguments).envs(variables.iter().copied()).assert().code(code);
@@ -84,7 +85,7 @@ fn a_device_is_chosen_by_index_and_by_part_of_its_name() {
     }
 }
 
-/// To install Mesa helps nobody who wrote a name that no device has.
+/// To install Mesa does not help where no device has the given name.
 #[test]
 fn a_device_that_is_not_there_is_refused_with_those_that_are() {
     let place = place();
@@ -125,7 +126,7 @@ fn without_a_driver_every_answer_and_every_install_command_is_given() {
         let answer =
             "\n  osmesa (OSMesa): none of libOSMesa.so.8, libOSMesa.so.6, libOSMesa.so can be loaded";
         assert_eq!(stderr.contains(answer), osmesa_too, "{stderr}");
-        // Nobody needs OSMesa who did not ask for it.
+        // The remedy for OSMesa is left out unless OSMesa was chosen.
         lacks(&stderr, &["libosmesa6"]);
         assert_eq!(stdout, "");
     }
@@ -169,7 +170,8 @@ fn a_vendor_file_that_points_nowhere_is_named_and_not_mesa() {
     has(&stderr, &["/dev/null", "names no library"]);
 }
 
-/// Some of these end the process inside of the driver; all of them are answered with the variable and its value.
+/// Some of these end the process inside of the driver; all of them are answered with the variable and its
+/// value.
 #[test]
 fn a_variable_that_keeps_mesa_from_opengl_33_is_named_and_not_mesa() {
     let place = place();
@@ -209,7 +211,7 @@ fn a_variable_that_keeps_mesa_from_opengl_33_is_named_and_not_mesa() {
     }
 }
 
-/// Mesa reads through a null pointer here, whichever way it is asked.
+/// Mesa reads through a null pointer here, however the device is opened.
 #[test]
 fn a_driver_that_ends_the_process_is_an_answer() {
     let place = place();
@@ -223,7 +225,7 @@ fn a_driver_that_ends_the_process_is_an_answer() {
     let listing: Value = serde_json::from_str(&stdout).unwrap();
     for name in names() {
         let device = of(&listing, name);
-        // Newer versions of Mesa refuse politely, or go on.
+        // Newer versions of Mesa return an error, or go on.
         if let Some(error) = device["error"].as_str() {
             has(error, &["MESA_EXTENSION_OVERRIDE=-GL_ARB_texture_rg"]);
             has(device["remedy"].as_str().unwrap(), &["env -u MESA_EXTENSION_OVERRIDE"]);

@@ -49,7 +49,7 @@ fn the_fast_path_is_exact_and_says_what_was_planned() {
         assert_eq!(report["certificate"]["unproved_radii"], 0, "{options}");
         assert_eq!(report["settings"]["sat_build"], build, "{options}");
         assert_eq!(report["settings"]["search"]["order"], order, "{options}: {}", report["planned"]);
-        // Who names a part of the method gets that, and no plan.
+        // A part of the method that is named is used, without a plan.
         let is_free = !options.contains("--s");
         assert_eq!(report["planned"].is_string(), is_free, "{options}");
     }
@@ -156,7 +156,8 @@ fn egl_and_osmesa_write_the_same_bytes() {
 fn softpipe_gives_the_same_bits() {
     let place = Workplace::new();
     place.answer("synth caustic -o map.npy --size 37x20 --density 3");
-    // Without the pyramid: where pixels store to different places of an array, softpipe takes the first one's place.
+    // Without the pyramid: where pixels store to different places of an array, softpipe takes the first one's
+    // place.
     for method in [
         "sat -r 8 --search forward",
         "sat -r 8 --sat-samples 16 --edges zero",

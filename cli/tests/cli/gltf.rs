@@ -1,4 +1,4 @@
-//! What a glTF file holds and the picture lacks is told in one line.
+//! What a glTF file holds and the picture lacks is reported in one line.
 
 use std::io::Cursor;
 
@@ -115,11 +115,16 @@ fn textures_that_are_not_read_are_told() {
         &mesh,
         &[
             "1 base colour texture (the base colour alone counts) (none.png: there is no such file)",
-            "1 emissive texture (nothing shines in its place) (textures[1]: KHR_texture_basisu is not supported",
+            "1 emissive texture (nothing shines in its place) (textures[1]: KHR_texture_basisu \
+             is not supported",
         ],
     );
     let found = warnings(&mesh, &[("none.png", b"RIFF\x10\0\0\0WEBPVP8 ")]);
-    assert!(found[0].contains("none.png: it is WebP, and only PNG and JPEG are supported"), "{}", found[0]);
+    assert!(
+        found[0].contains("none.png: it is image/webp, and only PNG and JPEG are supported"),
+        "{}",
+        found[0]
+    );
 }
 
 #[test]
@@ -154,7 +159,8 @@ fn materials_that_are_simplified_are_told() {
         (
             json!({"pbrMetallicRoughness": {"metallicFactor": 0, "roughnessFactor": 0},
                 "extensions": {"KHR_materials_transmission": {"transmissionFactor": 1},
-                "KHR_materials_volume": {"thicknessFactor": 1, "attenuationDistance": 1, "attenuationColor": [1, 0, 0]}}}),
+                "KHR_materials_volume":
+                    {"thicknessFactor": 1, "attenuationDistance": 1, "attenuationColor": [1, 0, 0]}}}),
             "1 colour of solid glass",
         ),
     ] {

@@ -1,4 +1,4 @@
-//! The program as a user meets it: arguments in, files, text and an exit code out.
+//! The program as a user runs it: arguments in, files, text and an exit code out.
 
 #![expect(clippy::unwrap_used, reason = "in the helpers of tests too, a panic is the report")]
 
@@ -84,7 +84,8 @@ impl Workplace {
         serde_json::from_str(&self.answer(arguments)).unwrap()
     }
 
-    /// Exit code 2, all `words` and no panic on stderr, nothing on stdout, and not a byte in the folder changed.
+    /// Exit code 2, all `words` and no panic on stderr, nothing on stdout, and not a byte in the folder
+    /// changed.
     #[track_caller]
     fn refuses(&self, arguments: &str, words: &[&str]) {
         let before = self.content();

@@ -137,6 +137,21 @@ fn help_fits_80_columns_and_names_every_verb() {
 }
 
 #[test]
+fn help_of_verbs_with_many_options_is_in_groups() {
+    let place = Workplace::new();
+    for (verb, groups) in [
+        ("radius", &["Input and output", "Question", "Method", "Thesis's variants", "Exactness"][..]),
+        ("bench", &["Suite and maps", "Method", "Question", "Time", "Input and output"]),
+        ("render", &["Input and output", "Picture", "Photons", "Kernels", "Direct light"]),
+        ("glsl", &["Input and output", "Question", "Method", "Host's textures", "Kernels"]),
+    ] {
+        let help = place.answer(&format!("{verb} --help"));
+        let places: Vec<_> = groups.iter().map(|group| help.find(&format!("\n{group}:\n"))).collect();
+        assert!(places.is_sorted() && places[0].is_some(), "{groups:?}: {help}");
+    }
+}
+
+#[test]
 fn stdout_holds_the_answer_and_stderr_the_log() {
     let place = Workplace::with_cornell();
     place.run("radius cornell.exr -o radius.npy").success().stderr("");

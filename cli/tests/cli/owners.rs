@@ -1,5 +1,5 @@
-//! Outputs that would take the place of another user's files. Only the superuser can make such files, so that the tests ask more
-//! of it than of others.
+//! Outputs that would take the place of another user's files. Only the superuser can make such files, so that
+//! more is tested when it runs the tests.
 #![cfg(unix)]
 
 use std::fs::{self, Permissions};
@@ -12,11 +12,11 @@ use varikernel::Image;
 
 use crate::Workplace;
 
-/// A user whom every system has, and who owns nothing.
+/// A user on every system, who owns no files.
 const NOBODY: u32 = 65_534;
 
-/// Runs the program in a folder with a map and a file `theirs.npy`, with these modes; as another user if this one is the superuser.
-/// Answers whether it is another, the exit code and what it told.
+/// Runs the program in a folder with a map and a file `theirs.npy`, with these modes; as another user if this
+/// one is the superuser. Returns whether it is another, the exit code and its messages.
 fn run_beside_theirs(folder_mode: u32, file_mode: u32) -> (bool, Option<i32>, String) {
     let place = Workplace::new();
     place.put_map("map.npy", &Image::filled(UVec2::new(4, 3), 7));

@@ -147,9 +147,8 @@ fn a_file_is_read_before_a_shipped_scene_of_its_name() {
 fn russian_roulette_absorbs() {
     let place = Workplace::new();
     let absorbed = |options: &str| {
-        place.json(&format!("photons cornell-empty --stats a.json --json {FEW} {options}"))["ends"]["absorbed"]
-            .as_u64()
-            .unwrap()
+        let answer = place.json(&format!("photons cornell-empty --stats a.json --json {FEW} {options}"));
+        answer["ends"]["absorbed"].as_u64().unwrap()
     };
     assert!(absorbed("--russian-roulette") > absorbed("") + 100);
 }

@@ -126,7 +126,8 @@ fn the_sheet_shows_every_figure_with_its_error() {
     let figures = answer["figures"].as_array().unwrap();
     assert_eq!(figures.len(), 4);
     assert!(figures.iter().all(|figure| figure["error"]["rmse"].as_f64().unwrap() > 0.0), "{answer}");
-    // The caustics and the walls are told apart, for every radius; the two boxes have walls in any case.
+    // The caustics and the walls are given separately, for every radius; the two boxes have walls in any
+    // case.
     let fixed = answer["fixed"].as_array().unwrap();
     for row in figures.iter().chain(fixed) {
         assert!(row["walls"]["rmse"].as_f64().unwrap() > 0.0, "{row}");

@@ -34,7 +34,7 @@ fn a_bench_without_room_names_the_same_command() {
     let output = with_little_room(&place, 1, &format!("{BENCH} --json run.json"));
     let again = command_in(&output, "help: make room on the disk, then run it again: ");
     assert_eq!(again, format!("{BENCH} --json run.json"));
-    // The answer itself is told all the same, and one warning for all saves that failed.
+    // The answer itself is printed all the same, and one warning for all saves that failed.
     assert!(String::from_utf8_lossy(&output.stdout).contains("sat-scan"));
     let stderr = String::from_utf8_lossy(&output.stderr);
     assert_eq!(stderr.matches("this run goes on, and saves again later").count(), 1, "{stderr}");

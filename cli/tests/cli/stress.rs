@@ -1,4 +1,4 @@
-//! `varikernel stress`: every promise is kept here, and a planted fault is told.
+//! `varikernel stress`: every promise is kept here, and a planted fault is reported.
 
 use std::collections::BTreeMap;
 
@@ -59,7 +59,7 @@ fn a_quick_run_keeps_every_promise() {
         *verdicts.entry(row[2].to_owned()).or_insert(0) += 1;
     }
     assert!(verdicts["kept"] > 200 && !verdicts.contains_key("broken"), "{verdicts:?}");
-    // Where f32 rounds, the files say by how much; the program had refused it.
+    // Where f32 rounds, the files hold by how much; the program had refused it.
     let wrong = |row: &&csv::StringRecord| row[3].starts_with("f32-doubling") && &row[10] != "0";
     assert!(
         rows.iter().filter(wrong).count() > 3 && rows.iter().filter(wrong).all(|row| &row[9] == "refused")

@@ -1,4 +1,4 @@
-//! `synth`: every kind is what its page says, and its seed decides all of it.
+//! `synth`: every kind is what its help says, and its seed decides all of it.
 
 use varikernel::Image;
 

@@ -1,7 +1,8 @@
-//! Files that nobody should have written: no reader panics, hangs or takes gigabytes of memory for them.
+//! Malformed files: no reader panics, hangs or takes gigabytes of memory for them.
 //!
-//! Each reader gets some changed seeds whose choice is always the same. `.ci/fuzz` runs each for a minute, and each time with others:
-//! VARIKERNEL_FUZZ_SECONDS says for how long. A file at which a reader fails stays in the folder that the failure names.
+//! Each reader gets some changed seeds whose choice is always the same. `.ci/fuzz` runs each for a minute,
+//! and each time with others: VARIKERNEL_FUZZ_SECONDS says for how long. A file at which a reader fails stays
+//! in the folder that the failure names.
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 #![expect(clippy::print_stdout, reason = "`.ci/fuzz` tells how far it came")]

@@ -1,4 +1,5 @@
-//! What reads files that others made, each as a function of a path; errors are as good as success, panics are not.
+//! The readers of files that others made, each as a function of a path; errors are as good as success, panics
+//! are not.
 
 use std::fs;
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! The verbs that measure, as a user meets them.
+//! The verbs that measure, as a user runs them.
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 

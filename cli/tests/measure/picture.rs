@@ -21,7 +21,7 @@ fn check(report: &PictureReport) {
         assert_eq!(row.copies.is_some(), row.name != "photons");
     }
     assert!(report.contributing > report.drawn / 2 && report.contributing <= report.drawn, "{report:?}");
-    // Each row is told in the unit, and each target from its row.
+    // Each row is given in the unit, and each target from its row.
     let (copy, unit, density) = (&report.rows[0], &report.rows[1], &report.rows[2]);
     let ratio = density.statistics.median_ms / unit.statistics.median_ms;
     let [against_points, traced] = report.targets.as_slice() else { panic!("{:?}", report.targets) };

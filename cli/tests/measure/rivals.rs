@@ -89,7 +89,10 @@ proptest! {
     #[test]
     fn rivals_agree_with_the_definition(
         (width, height) in (1..16_u32, 1..16_u32),
-        counts in proptest::collection::vec(prop_oneof![4 => Just(0_u32), 2 => 1..9_u32, 1 => Just(1000)], 256),
+        counts in proptest::collection::vec(
+            prop_oneof![4 => Just(0_u32), 2 => 1..9_u32, 1 => Just(1000)],
+            256,
+        ),
         min_photons in 1..60_u32,
         max_radius in 1..20_u32,
         scale: bool,
@@ -202,7 +205,7 @@ fn the_program_shows_rivals_and_a_wrong_one() {
         "{text}"
     );
 
-    // Another run adds nothing to whole sets; one wrong pixel in the file is one that it tells of.
+    // Another run adds nothing to whole sets; one wrong pixel in the file is reported.
     let mut report = Report::load(&file).unwrap();
     let wrong = report.runs.iter_mut().find(|run| run.case.rival() == Some(Rival::Kiddo)).unwrap();
     wrong.wrong_pixels = 1;

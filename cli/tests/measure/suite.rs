@@ -41,8 +41,8 @@ fn every_row_is_there_with_the_right_answer() {
                 case.stage == stage && case.map == map && case.size == SIZE && case.situation().is_none()
             })
         };
-        // Three orders at two MR, the bracketed one at a third and with zero edges at three; four frames of the
-        // thesis, three of the scan and the planner's, at two MR.
+        // Three orders at two MR, the bracketed one at a third and with zero edges at three; four frames of
+        // the thesis, three of the scan and the planner's, at two MR.
         assert_eq!([Stage::Copy, Stage::Probe, Stage::Search, Stage::Frame].map(of_stage), [1, 1, 10, 16]);
         assert_eq!(of_stage(Stage::Build), if map == "caustic" { 3 } else { 0 });
     }
@@ -110,7 +110,8 @@ fn named(report: &Report) -> Vec<(String, String)> {
     report.targets.iter().map(|target| (target.name.clone(), target.map.clone())).collect()
 }
 
-/// A report by hand: the rows of a run, as if it had been of 1024 x 1024, and times that meet each bound just so.
+/// A report by hand: the rows of a run, as if it had been of 1024 x 1024, and times that meet each bound just
+/// so.
 fn by_hand() -> Report {
     let mut report = REPORT.clone();
     let large = [1024, 1024];
@@ -226,7 +227,7 @@ fn a_planted_failure_is_seen_and_a_wrong_row_is_no_measure() {
         run.wrong_pixels = u64::from(is_it && run.case.map == "step" && run.case.max_radius == Some(32));
     });
     assert_eq!(gone, [failed("auto", "step", None), failed("frame", "step", None)]);
-    // A mean radius above 4 asks for more than to be no slower.
+    // With a mean radius above 4 the target is more than to be no slower.
     let rank = planted(&|run| {
         let is_it = run.case.stage == Stage::Search && run.case.search == Some(Order::Binary);
         if is_it && run.case.max_radius == Some(32) {

@@ -1,4 +1,4 @@
-//! A display server of its own for each test, and hands for the program in it: mouse, keys, drops and eyes.
+//! A display server of its own for each test, and what a user does there: mouse, keys, drops and screenshots.
 
 use std::io::{BufRead as _, BufReader};
 use std::path::Path;
@@ -66,7 +66,7 @@ impl Display {
         let child = self.command(arguments).spawn().unwrap();
         let mut program = Program { display: self, child, window: self.root };
         program.window = wait(|| program.find());
-        // Without a window manager, nobody else gives it the keys.
+        // Without a window manager, nothing else gives it the keyboard focus.
         wait(|| {
             let focus =
                 self.connection.set_input_focus(InputFocus::PARENT, program.window, x11rb::CURRENT_TIME);
@@ -192,7 +192,7 @@ impl Program<'_> {
         self.display.fake(BUTTON_RELEASE_EVENT, 1, to);
     }
 
-    /// Does something while the program is too busy to see it.
+    /// Does something while the program is too busy to react.
     pub(crate) fn while_busy(&self, act: impl FnOnce()) {
         let signal = |name: &str| {
             let status = Command::new("kill").args([name, &self.child.id().to_string()]).status().unwrap();
@@ -239,7 +239,7 @@ impl Program<'_> {
         connection.set_selection_owner(source, selection, x11rb::CURRENT_TIME).unwrap().check().unwrap();
         self.send("XdndEnter", [source, 5 << 24, list, 0, 0]);
         self.send("XdndPosition", [source, 0, 0, x11rb::CURRENT_TIME, display.atom("XdndActionCopy")]);
-        // It asks what is dropped; only then may it be let go.
+        // The program asks what is dropped; only then is the button released.
         let request = wait(|| match connection.poll_for_event().unwrap() {
             Some(Event::SelectionRequest(request)) => Some(request),
             _ => None,
@@ -282,7 +282,7 @@ impl Program<'_> {
     }
 }
 
-/// What `found` brings at last.
+/// Waits for the result of `found`.
 #[track_caller]
 fn wait<T>(mut found: impl FnMut() -> Option<T>) -> T {
     let begun = Instant::now();

@@ -1,4 +1,5 @@
-//! The window for real, on a display server without a screen: it starts, draws, answers to mouse and keys, and closes.
+//! The window for real, on a display server without a screen: it starts, draws, answers to mouse and keys,
+//! and closes.
 
 #![expect(clippy::unwrap_used, reason = "in the helpers of tests too, a panic is the report")]
 #![cfg(all(unix, not(target_vendor = "apple")))]
@@ -119,7 +120,8 @@ fn the_picture_fills_the_window_at_any_size_and_the_window_manager_closes_it() {
     let program = display.open(&SMALL, DONE);
     for (width, height) in [(1000, 640), (900, 900), (1200, 500)] {
         program.resize(width, height);
-        // The panels take 292 and 262 columns, legends 52 rows; the picture is a square whose front has a margin.
+        // The panels take 292 and 262 columns, legends 52 rows; the picture is a square whose front has a
+        // margin.
         let side = (width - 292 - 262).min(height - 52);
         program.look_until("a picture of that size", |seen| {
             let [first, last] = extent(seen, [294, width - 264]);
@@ -173,11 +175,12 @@ fn a_screenshot_is_the_golden_one_but_for_times() {
     let kept = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("view.png");
     write_colours(&kept, &found).unwrap();
     let Colours::Encoded(wanted) = read_colours(&golden).unwrap() else { panic!("a PNG is encoded") };
-    // Without the last 33 columns, which tell times and pixels.
+    // Without the last 33 columns, which show times and pixels.
     let columns = [0, 92];
     let apart = rmse(&found, &wanted, columns);
     assert!(apart < 4.0, "RMSE {apart}: compare {} with {}", kept.display(), golden.display());
-    // A slider or a colour elsewhere is seen: the left half moved by one square, and the halves of the picture swapped.
+    // A slider or a colour elsewhere is seen: the left half moved by one square, and the halves of the
+    // picture swapped.
     let moved = Image::from_fn(wanted.size(), |x, y| wanted.at(if x < 36 { (x + 1) % 36 } else { x }, y));
     assert!(rmse(&found, &moved, columns) > 4.0);
     let swapped =

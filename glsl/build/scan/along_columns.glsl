@@ -1,5 +1,5 @@
-// Elements of the scan along columns: what a tile adds to its 4 columns of the table, its own sums and those of the
-// same rows to the left of it.
+// Elements of the scan along columns: what a tile adds to its 4 columns of the table, its own sums and those
+// of the same rows to the left of it.
 
 // Sums of each tile of 4 x 8: its rows 0 to 3, its rows 4 to 7, its 4 columns.
 uniform usampler2DArray tile_sums;

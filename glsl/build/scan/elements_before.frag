@@ -1,5 +1,5 @@
-// Scan, step 3: the sum of all elements before each, for a run of 8 at once: whole groups first, then the elements of the
-// run's own group. Follows a file that defines the elements.
+// Scan, step 3: the sum of all elements before each, for a run of 8 at once: whole groups first, then the
+// elements of the run's own group. Follows a file that defines the elements.
 
 // The sum of each group of elements.
 uniform usampler2D group_sums;

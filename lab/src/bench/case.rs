@@ -1,4 +1,4 @@
-//! What one row of a timing run is about.
+//! One row of a timing run.
 
 use std::fmt;
 
@@ -47,15 +47,15 @@ impl Stage {
 /// The variant of frames that the [`planner`](varikernel::radius::planner) chooses.
 pub const AUTO: &str = "auto";
 
-/// What tells a row from all others of a run; what has no effect on a stage is absent.
+/// What identifies a row among all others of a run; what has no effect on a stage is absent.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Case {
     /// What is timed.
     pub stage: Stage,
     /// The method and, where it counts, how its structure is built: `brute-force`, `naive-mipmap`,
-    /// `averaged-mipmap`, `pyramid`, `sat` (search), `sat-doubling-4` or `sat-scan` (build and frame), `copy`, `probe`;
-    /// [`AUTO`]; or the name of a [`Rival`] or a [`Situation`]. A table that is kept in another number than the run's
-    /// base says so: `sat-scan-u16`.
+    /// `averaged-mipmap`, `pyramid`, `sat` (search), `sat-doubling-4` or `sat-scan` (build and frame),
+    /// `copy`, `probe`; [`AUTO`]; or the name of a [`Rival`] or a [`Situation`]. A table that is kept in
+    /// another number than the run's base has its name as well: `sat-scan-u16`.
     pub variant: String,
     /// The map's name.
     pub map: String,
@@ -169,7 +169,8 @@ pub(super) enum Work {
     Rival(Rival, Search),
 }
 
-/// Every case of a map, units first and rivals last. A brute-force search is its whole frame, so only the frame is a case.
+/// Every case of a map, units first and rivals last. A brute-force search is its whole frame, so only the
+/// frame is a case.
 pub(super) fn cases(settings: &BenchSettings, map: &MapInfo) -> Vec<(Case, Work)> {
     if let Some(suite) = &settings.suite {
         return suite.cases(settings, map);
@@ -206,8 +207,8 @@ mod tests {
         let count = |settings: &BenchSettings, stage| {
             cases(settings, &map).iter().filter(|(case, _)| case.stage == stage).count()
         };
-        // Pyramid and three tables are built; pyramid and table are searched; brute force is a frame as well. Two
-        // orders, and a third for the table.
+        // Pyramid and three tables are built; pyramid and table are searched; brute force is a frame as well.
+        // Two orders, and a third for the table.
         assert_eq!([Stage::Build, Stage::Search, Stage::Frame].map(|s| count(&settings, s)), [4, 5, 13]);
         settings.edges = vec![Edges::Zero, Edges::Scale];
         assert_eq!([Stage::Build, Stage::Search, Stage::Frame].map(|s| count(&settings, s)), [4, 10, 26]);

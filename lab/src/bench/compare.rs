@@ -1,12 +1,12 @@
-//! Whether one run was faster than another, as far as their noise tells.
+//! Whether one run was faster than another, given the noise of both.
 //!
-//! Samples that follow each other share a machine's mood, so that thousands of them within a second prove little. Sets
-//! are taken apart in time and stand for it. The rule:
+//! Consecutive samples are correlated (clock rates, other programs), so that thousands of them within a
+//! second prove little. Sets are taken at different times, so that they show this. The rule:
 //!
 //! - fewer than 4 sets on either side: *too few sets*, no verdict;
-//! - *faster* or *slower* if every set's median of one side lies beyond every one of the other, and the medians
-//!   of all samples differ by at least 3 %. For two runs alike, 4 sets against 4 lie so by chance in 1 of 35 cases,
-//!   5 against 5 in 1 of 126;
+//! - *faster* or *slower* if every set's median of one side lies beyond every one of the other, and the
+//!   medians of all samples differ by at least 3 %. For two runs alike, 4 sets against 4 lie so by chance in
+//!   1 of 35 cases, 5 against 5 in 1 of 126;
 //! - *no difference* otherwise: none that these two runs could show.
 
 use super::case::Case;
@@ -14,10 +14,11 @@ use super::report::{Report, Run};
 
 /// The least number of sets that a verdict needs.
 const SETS: usize = 4;
-/// The least ratio that counts as a difference: two starts of one program on one machine differ by about this much.
+/// The least ratio that counts as a difference: two starts of one program on one machine differ by about this
+/// much.
 const MARGIN: f64 = 1.03;
 
-/// What can be said of a new time against an old one.
+/// The verdict on a new time against an old one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
     /// The new one is faster.
@@ -45,7 +46,7 @@ pub struct ComparedRun {
     pub ratio: f64,
     /// New over old, each in copies of its own run, where both have them.
     pub copies_ratio: Option<f64>,
-    /// What can be said.
+    /// The verdict.
     pub verdict: Verdict,
 }
 

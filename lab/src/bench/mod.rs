@@ -1,13 +1,13 @@
-//! Timing runs: which cases, how long each, what came out, and whether two runs differ.
+//! Timing runs: which cases, how long each, the results, and whether two runs differ.
 //!
-//! What is timed is what thesis 5.1 times: state changes, the intermediate structure, the search; not set-up nor
-//! compilation. Every time is also told in *copies* ([`Unit::Copy`](super::Unit)), and every case's answer is checked
-//! against the definition before it is ranked.
+//! What is timed is what thesis 5.1 times: state changes, the intermediate structure, the search; not set-up
+//! nor compilation. Every time is also given in *copies* ([`Unit::Copy`](super::Unit)), and every case's
+//! answer is checked against the definition before it is ranked.
 //!
 //! A run goes map by map. For each map it goes over all its cases several times, a *set* of samples each
 //! time, so that a machine that slows down meanwhile slows all cases alike and the copy with them. Each set
-//! starts with one untimed run. The time that is left is shared out anew before each set: slow cases get few samples,
-//! but every case gets one, as long as the budget lasts.
+//! starts with one untimed run. The time that is left is shared out anew before each set: slow cases get few
+//! samples, but every case gets one, as long as the budget lasts.
 //!
 //! A [suite](FastSuite) is a fixed set of maps and cases with [targets](Target) for their ratios.
 //!

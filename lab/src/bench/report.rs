@@ -1,4 +1,4 @@
-//! What came out of a timing run, and its files.
+//! The results of a timing run, and its files.
 
 use std::fs;
 use std::path::Path;
@@ -26,14 +26,14 @@ pub struct Device {
     pub driver: String,
     /// Whether the renderer runs on the processor.
     pub software: bool,
-    /// The processor, as far as the system tells.
+    /// The processor, as far as the system names it.
     pub processor: String,
     /// Threads that the processor runs at once for this program.
     pub threads: usize,
 }
 
 impl Device {
-    /// What can be asked of the context and the system.
+    /// What the context and the system report.
     #[must_use]
     pub fn of(info: &DeviceInfo) -> Self {
         // "4.5 (Core Profile) Mesa 22.3.6", "3.3.0 NVIDIA 535.54".
@@ -77,7 +77,8 @@ pub struct Run {
     pub suspect: Vec<usize>,
     /// Pixels whose radius is not that of the definition; for a unit, texels that are not as expected.
     pub wrong_pixels: u64,
-    /// The mean of the definition's radii, which decides what a search costs; absent where none was asked for.
+    /// The mean of the definition's radii, which decides what a search costs; absent where none was asked
+    /// for.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mean_radius: Option<f64>,
     /// What the planner chose and why, for a frame of its choice.
@@ -120,7 +121,7 @@ impl Run {
         self.statistics = Statistics::of(&self.samples_ms).unwrap_or(self.statistics);
     }
 
-    /// Whether a method that must be right was wrong, so that its time says nothing.
+    /// Whether a method that must be right was wrong, so that its time means nothing.
     ///
     /// Approximate methods are allowed pixels that differ.
     #[must_use]
@@ -159,7 +160,7 @@ pub struct Report {
     pub shaders: String,
     /// Where it ran.
     pub device: Device,
-    /// What was asked.
+    /// The settings.
     pub settings: BenchSettings,
     /// The maps.
     pub maps: Vec<MapInfo>,
@@ -167,7 +168,7 @@ pub struct Report {
     pub runs: Vec<Run>,
     /// What was not timed.
     pub left_out: Vec<LeftOut>,
-    /// What a suite was meant to reach; none without a suite.
+    /// The suite's targets, judged; none without a suite.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub targets: Vec<Target>,
 }
@@ -187,7 +188,8 @@ impl Report {
             .find(|run| run.case.stage == Stage::Copy && run.case.map == map && run.case.size == size)
     }
 
-    /// Runs of one stage of a map, fastest first; wrong answers and [situations](super::Situation) are not among them.
+    /// Runs of one stage of a map, fastest first; wrong answers and [situations](super::Situation) are not
+    /// among them.
     #[must_use]
     pub fn ranking(&self, stage: Stage, map: &str, size: [u32; 2]) -> Vec<&Run> {
         let mut runs: Vec<&Run> = self.runs.iter().collect();
@@ -220,7 +222,7 @@ impl Report {
         }
     }
 
-    /// Refuses to go on with a report that was measured otherwise than `now` would measure.
+    /// Checks that `now` would measure as this report was measured.
     ///
     /// # Errors
     /// [`Error::File`] with what differs.

@@ -1,4 +1,4 @@
-//! Rivals on the processor as cases of a timing run.
+//! Rivals (baselines) on the processor as cases of a timing run.
 
 use std::time::{Duration, Instant};
 
@@ -36,7 +36,7 @@ impl Case {
     }
 }
 
-/// Every rival with every question, whose order means nothing to it.
+/// Every rival with every question; the order of the search does not apply.
 pub(super) fn cases(settings: &BenchSettings, map: &MapInfo) -> Vec<(Case, Work)> {
     let mut cases: Vec<(Case, Work)> = Vec::new();
     for &rival in &settings.rivals {
@@ -81,8 +81,8 @@ impl Rivals {
 
 /// One run that does not count, then samples until `time` is used or there are `limit`; at least one.
 ///
-/// There is no query on the processor, so that the clock stands for it. A run that takes all the time by itself
-/// counts, being long enough for its start not to matter.
+/// There is no query on the processor, so that the clock stands for it. A run that takes all the time by
+/// itself counts, being long enough for its start not to matter.
 pub(super) fn take_set(
     mut run: impl FnMut() -> Result<()>,
     limit: usize,

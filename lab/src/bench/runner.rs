@@ -20,7 +20,7 @@ pub struct Progress {
     pub sets_done: usize,
     /// Sets in all.
     pub sets: usize,
-    /// The case whose turn it was.
+    /// The case that was timed last.
     pub case: String,
     /// What is left of the budget.
     pub budget_left: Duration,
@@ -28,14 +28,15 @@ pub struct Progress {
 
 /// Times every case of `maps`, and adds to `earlier` if there is one.
 ///
-/// `observe` is called after each set, with everything that is known by then: to save it, and to show the progress.
+/// `observe` is called after each set, with everything that is known by then: to save it, and to show the
+/// progress.
 ///
 /// # Errors
-/// [`Error::Gl`] if the driver fails while it is timed, and whatever `observe` fails with. A case that cannot be set
-/// up is no error: it is left out, with the reason.
+/// [`Error::Gl`] if the driver fails while it is timed, and whatever `observe` fails with. A case that cannot
+/// be set up is no error: it is left out, with the reason.
 ///
 /// # Panics
-/// If a [`MapSource`] makes a map of another size than it says.
+/// If a [`MapSource`] makes a map of another size than it declares.
 pub fn run(
     gl: &Gl,
     settings: &BenchSettings,
@@ -53,8 +54,8 @@ pub fn run(
     let mut runner =
         Runner { gl, settings, report, timer: Timer::new(gl)?, start, budget, sets, sets_done: 0, observe };
     for (index, map) in maps.iter().enumerate() {
-        // A map's share grows with its cases and its side: its samples cost as much as it has pixels, and small maps
-        // need no more of them than large ones.
+        // A map's share grows with its cases and its side: a sample's time grows with the map's pixels, and
+        // small maps need no more samples than large ones.
         let weight = |map: &MapSource| {
             let cases = u32::try_from(case::cases(settings, &map.info).len()).unwrap_or(u32::MAX);
             f64::from(cases) * map.size().as_dvec2().element_product().sqrt()
@@ -222,7 +223,7 @@ fn budget_reason(budget: Duration) -> String {
     format!("the budget of {:.1} s was spent before its turn", budget.as_secs_f64())
 }
 
-/// An error in a table: its help is for another place.
+/// An error in a table, without its help, which is for other output.
 fn first_line(error: &Error) -> String {
     error.to_string().lines().next().unwrap_or_default().to_owned()
 }

@@ -29,9 +29,9 @@ const SEED: u64 = 2;
 pub(super) struct Scene {
     situation: Situation,
     search: Search,
-    /// What a frame brings: for added photons, those alone.
+    /// The counts of a frame: for added photons, those alone.
     density: DensityMap,
-    /// What the radii are asked of.
+    /// The map whose radii are searched.
     now: Version,
     /// What an edit makes of it, and the next edit back again.
     edit: Option<Edit>,
@@ -46,7 +46,7 @@ struct Edit {
     size: UVec2,
 }
 
-/// Counts, and the definition's radii from when they are asked for.
+/// Counts, and the definition's radii once they were used.
 #[derive(Debug)]
 struct Version {
     counts: Image<u32>,
@@ -152,7 +152,8 @@ impl Scene {
         }
     }
 
-    /// How many pixels of the last run are not as the definition has them; those that were not proved count as well.
+    /// How many pixels of the last run are not as the definition has them; those that were not proved count
+    /// as well.
     pub(super) fn wrong_pixels(&mut self, pipeline: &RadiusPipeline) -> Result<u64> {
         let Version { counts, radii } = &mut self.now;
         let radii = radii.get_or_insert_with(|| reference::radius_by_table(counts, self.search));

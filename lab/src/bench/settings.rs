@@ -1,4 +1,4 @@
-//! What a timing run is asked for.
+//! The settings of a timing run.
 
 use std::fmt;
 use std::time::Duration;
@@ -98,7 +98,7 @@ impl BenchSettings {
                     let mut settings =
                         Settings { search, method, sat_build, sat_samples, storage, ..self.base };
                     if method == Method::NaiveMipmap {
-                        // It has a search of its own, for which the order means nothing.
+                        // It has a search of its own, to which the order does not apply.
                         settings.search.order = Settings::of(method).search.order;
                     }
                     let is_possible =
@@ -170,11 +170,11 @@ impl BenchSettings {
 /// A map's identity in a file of results.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct MapInfo {
-    /// What it is called.
+    /// Its name.
     pub name: String,
     /// Columns and rows.
     pub size: [u32; 2],
-    /// What tells it from others of that name and size: a seed, a number of photons.
+    /// What distinguishes it from others of that name and size: a seed, a number of photons.
     pub origin: String,
 }
 

@@ -4,15 +4,15 @@ use super::case::{Case, Stage};
 use super::settings::MapInfo;
 use varikernel::settings::Settings;
 
-/// What a frame is spared, or what comes after it.
+/// Work that a frame can leave out, or that follows it.
 ///
-/// Each is a row of its own: a frame, a search or a proof by the table that is built by a scan, timed after whatever has to
-/// be there before, and checked against the definition.
+/// Each is a row of its own: a frame, a search or a proof by the table that is built by a scan, timed after
+/// whatever has to be there before, and checked against the definition.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Situation {
-    /// A frame without photons, as the host knows.
+    /// A frame without photons, which the host declares.
     Empty,
-    /// A frame without photons of which the host knows only that there is 1 at most.
+    /// A frame without photons, of which the host declares only that there is 1 at most.
     EmptyUnknown,
     /// A frame with the photons of the lower left quarter of the map alone.
     Quarter,
@@ -20,11 +20,12 @@ pub enum Situation {
     NoneMasked,
     /// A search with a mask that needs the right half of the pixels.
     HalfMasked,
-    /// The same frame again, as the host vouches.
+    /// The same frame again, which the host declares.
     Unchanged,
     /// A frame after an edit of 64 x 64 pixels in the middle.
     TileChanged,
-    /// A frame after an edit of the first 64 x 64 pixels, at the lower left, on which every later entry of a table depends.
+    /// A frame after an edit of the first 64 x 64 pixels, at the lower left, on which every later entry of a
+    /// table depends.
     CornerChanged,
     /// A frame with photons in addition, 1 a pixel.
     Added,

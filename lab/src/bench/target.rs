@@ -1,4 +1,4 @@
-//! What a method was meant to reach, and whether it did.
+//! Targets for a method's times, and whether they were reached.
 
 use std::fmt;
 
@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::settings::MapInfo;
 
-/// Which side of its bound a target wants to be on.
+/// Which side of its bound a target has to be on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Side {
@@ -42,7 +42,7 @@ pub struct Target {
     pub map: String,
     /// The map's columns and rows.
     pub size: [u32; 2],
-    /// What else tells it from others of that name: MR, edges, the place of an edit.
+    /// What else distinguishes it from others of that name: MR, edges, the place of an edit.
     pub question: String,
     /// The ratio; none if a row that it needs is missing or wrong.
     pub measured: Option<f64>,

@@ -42,7 +42,7 @@ impl Workbench {
             return Err(Error::TooLarge { size, limit });
         }
         let counts = map.make();
-        assert_eq!(counts.size(), size, "a map source of another size than it says");
+        assert_eq!(counts.size(), size, "a map source of another size than it declares");
         let bounds = if settings.storages.contains(&Storage::U16) {
             CountBounds::of_boxes(&counts, settings.widest())
         } else {

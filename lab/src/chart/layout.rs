@@ -26,8 +26,8 @@ pub(super) struct Layout {
     zero: Option<f64>,
 }
 
-/// Values beyond, which only a spoilt file of results holds, stand at the end of an axis; so do those below one part of it,
-/// so that no axis goes on for ever.
+/// Values beyond, which only a damaged file of results holds, are drawn at the end of an axis; so are those
+/// below one part of it, so that every axis is finite.
 const LARGEST: f64 = 1e100;
 
 impl Layout {
@@ -88,7 +88,7 @@ impl Ranged for Layout {
         } else {
             (value - start) / (end - start)
         };
-        // Far outside of the picture, where it is still a place that can be reckoned with.
+        // Far outside of the picture, but still finite.
         (f64::from(low) + f64::from(high - low) * share.clamp(-100.0, 100.0)).round() as i32
     }
 
@@ -120,7 +120,7 @@ fn decades(range: &Range<f64>) -> Vec<f64> {
 }
 
 fn number(value: f64) -> String {
-    // Ten digits hide what binary fractions add.
+    // Ten digits hide the rounding of binary fractions.
     let text = format!("{value:.10}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }

@@ -1,8 +1,8 @@
 //! Plots as SVG: lines, points and intervals over named axes.
 //!
-//! Black, white and the grid's grey are left to the page's style sheet where the picture is part of one; alone, the
-//! picture is dark on white. A value that a logarithmic axis has no place for, 0, stands on a line of its own at the
-//! axis's end, which says so.
+//! Black, white and the grid's grey are left to the page's style sheet where the picture is part of one;
+//! alone, the picture is dark on white. A value that a logarithmic axis has no place for, 0, stands on a line
+//! of its own at the axis's end, which says so.
 
 mod layout;
 
@@ -86,7 +86,7 @@ pub(crate) struct Chart {
 }
 
 impl Chart {
-    /// The picture. Without any point it says so.
+    /// The picture; without any point, a note that there is none.
     pub(crate) fn svg(&self) -> String {
         let mut svg = String::new();
         {

@@ -2,7 +2,7 @@
 
 use varikernel::image::Image;
 
-/// What stands beyond the border.
+/// The values beyond the border.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Border {
     /// The picture mirrored, its last pixel first: `c b a | a b c | c b a`.
@@ -26,8 +26,8 @@ impl Border {
     }
 }
 
-/// The sum of `across[i] down[j] image(x + i - a, y + j - b)`, where a and b are the middles of the weights, whose numbers are
-/// odd.
+/// The sum of `across[i] down[j] image(x + i - a, y + j - b)`, where a and b are the middles of the weights,
+/// whose numbers are odd.
 pub(super) fn filter(image: &Image<f64>, across: &[f64], down: &[f64], border: Border) -> Image<f64> {
     let size = image.size();
     let (columns, rows) = (size.x as usize, size.y as usize);

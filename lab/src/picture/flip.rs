@@ -1,8 +1,9 @@
-//! LDR-FLIP: P. Andersson and others, "FLIP: A Difference Evaluator for Alternating Images" (2020), and its appendix of
-//! constants: how strongly a person sees two pictures differ who alternates between them on the same screen.
+//! LDR-FLIP: P. Andersson and others, "FLIP: A Difference Evaluator for Alternating Images" (2020), and its
+//! appendix of constants: how strongly two pictures differ to an observer who alternates between them on the
+//! same screen.
 //!
-//! Both are blurred as the eye blurs them, then compared by colour (section 4.1). Edges and points are looked for in both, and
-//! where one has what the other lacks, the colour difference counts more (4.2, 4.3).
+//! Both are blurred as the eye blurs them, then compared by colour (section 4.1). Edges and points are looked
+//! for in both, and where one has what the other lacks, the colour difference counts more (4.2, 4.3).
 
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
@@ -91,7 +92,8 @@ fn blur(channel: &Image<f64>, sensitivity: &[(f64, f64)]) -> Vec<f64> {
     sum
 }
 
-/// Strengths of edges and points of the luminance (section 4.2): the lengths of its first and second derivatives under a bell.
+/// Strengths of edges and points of the luminance (section 4.2): the lengths of its first and second
+/// derivatives under a bell.
 fn features(luminance: &Image<f64>) -> Vec<[f64; 2]> {
     let grey = luminance.map(|value| (value + 16.0) / 116.0);
     let sigma = 0.5 * FEATURE_WIDTH * PIXELS_PER_DEGREE;
@@ -194,14 +196,16 @@ mod tests {
 
     #[test]
     fn constant_pictures_by_hand() {
-        // The largest distance: green is (87.735, -86.18, 83.18) in L*a*b*, blue (32.297, 79.19, -107.86). With Hunt
-        // (87.735, -75.61, 72.98) and (32.297, 25.58, -34.84): 55.438 + hypot(101.19, 107.82) = 203.30, to the power of 0.7: 41.27.
+        // The largest distance: green is (87.735, -86.18, 83.18) in L*a*b*, blue (32.297, 79.19, -107.86).
+        // With Hunt (87.735, -75.61, 72.98) and (32.297, 25.58, -34.84): 55.438 + hypot(101.19, 107.82) =
+        // 203.30, to the power of 0.7: 41.27.
         let largest = 203.30_f64.powf(0.7);
         // White and black are 100 apart: 25.12, past the knee at 16.51.
         let knee = 0.4 * largest;
         let expected = 0.95 + 0.05 * (100.0_f64.powf(0.7) - knee) / (largest - knee);
         assert!((constant([255; 3], [0; 3]) - expected).abs() < 1e-4, "{expected}");
-        // Level 10 is linear: Y = 10 / 255 / 12.92, L* = (29/3)³ Y = 2.7418; to the power of 0.7: 2.0259, before the knee.
+        // Level 10 is linear: Y = 10 / 255 / 12.92, L* = (29/3)³ Y = 2.7418; to the power of 0.7: 2.0259,
+        // before the knee.
         let lightness = (29.0_f64 / 3.0).powi(3) * 10.0 / 255.0 / 12.92;
         let expected = 0.95 * lightness.powf(0.7) / knee;
         assert!((constant([10; 3], [0; 3]) - expected).abs() < 1e-4, "{expected}");

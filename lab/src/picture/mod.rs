@@ -1,4 +1,4 @@
-//! How far a picture is from its reference: by light, and as people see it.
+//! How far a picture is from its reference: by light, and as it is perceived.
 
 mod filter;
 mod flip;
@@ -8,26 +8,28 @@ mod ssim;
 
 use varikernel::image::{Image, ToneMap};
 
-/// The share of the reference's root mean square below which an error counts as if the pixel were that bright.
+/// The share of the reference's root mean square below which an error counts as if the pixel were that
+/// bright.
 const DARK: f64 = 0.1;
 
 /// The error of a picture of linear RGB radiance against its reference, over all pixels.
 ///
-/// The first two are of the light itself, over all colours. The other two are of what a screen shows: both pictures as 8-bit
-/// sRGB by the tone map that suits the reference ([`ToneMap::fitting`]), as the program's PNGs are. Where a picture or its
-/// reference holds something that isn't finite, all four are NaN.
+/// The first two are of the light itself, over all colours. The other two are of what a screen shows: both
+/// pictures as 8-bit sRGB by the tone map that suits the reference ([`ToneMap::fitting`]), as the program's
+/// PNGs are. Where a picture or its reference holds something that isn't finite, all four are NaN.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct PictureError {
     /// Root of the mean squared difference.
     pub rmse: f64,
-    /// Mean of the squared difference over (squared reference + ε), where ε is the square of a tenth of the reference's root
-    /// mean square: dark pixels count as much as bright ones. Infinite for any light where
+    /// Mean of the squared difference over (squared reference + ε), where ε is the square of a tenth of the
+    /// reference's root mean square: dark pixels count as much as bright ones. Infinite for any light where
     /// the reference is black everywhere.
     pub relative_mse: f64,
-    /// Mean structural similarity of the luminance (Z. Wang and others, 2004: an 11 x 11 bell of 1.5 pixels, K1 = 0.01,
-    /// K2 = 0.03, mirrored at the border), from -1 to 1: 1 is the same picture.
+    /// Mean structural similarity of the luminance (Z. Wang and others, 2004: an 11 x 11 bell of 1.5 pixels,
+    /// K1 = 0.01, K2 = 0.03, mirrored at the border), from -1 to 1: 1 is the same picture.
     pub ssim: f64,
-    /// Mean LDR-FLIP (P. Andersson and others, 2020) at 67 pixels per degree, from 0 to 1: 0 is the same picture.
+    /// Mean LDR-FLIP (P. Andersson and others, 2020) at 67 pixels per degree, from 0 to 1: 0 is the same
+    /// picture.
     pub flip: f64,
 }
 
@@ -41,8 +43,8 @@ impl PictureError {
         Self::of_light_and_sight([picture, reference], [picture, reference])
     }
 
-    /// Compares the light of one pair and the looks of another, each a picture and its reference: indirect light is what
-    /// photons are answerable for, and the whole picture is what people see.
+    /// Compares the light of one pair and the looks of another, each a picture and its reference: photons
+    /// make the indirect light, and the whole picture is what is seen.
     ///
     /// # Panics
     /// If the sizes differ.
@@ -68,7 +70,8 @@ impl PictureError {
     }
 }
 
-/// The error of some pixels of linear RGB radiance, wherever they lie: the first two numbers of a [`PictureError`].
+/// The error of some pixels of linear RGB radiance, wherever they lie: the first two numbers of a
+/// [`PictureError`].
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct LightError {
     /// As [`PictureError::rmse`].
@@ -146,8 +149,8 @@ mod tests {
         assert!((error.relative_mse - 1.0 / 1.01).abs() < 1e-12, "{error:?}");
     }
 
-    /// A grey that the tone map makes of both: the exposure brings the reference to one third, and a picture of half of it to
-    /// one sixth.
+    /// A grey that the tone map makes of both: the exposure brings the reference to one third, and a picture
+    /// of half of it to one sixth.
     #[test]
     fn both_are_mapped_as_suits_the_reference() {
         let image = |value: f32| Image::filled(UVec2::splat(3), [value; 3]);

@@ -1,10 +1,10 @@
-//! Structural similarity: Z. Wang and others, "Image Quality Assessment: From Error Visibility to Structural Similarity"
-//! (2004).
+//! Structural similarity: Z. Wang and others, "Image Quality Assessment: From Error Visibility to Structural
+//! Similarity" (2004).
 //!
-//! Means, variances and covariance of both pictures are taken under a bell around each pixel, and compared (equation 13 of the
-//! paper). Its constants are kept. As usual, the luminance is that of encoded colours (ITU-R BT.709's weights on sRGB), from 0
-//! to 1. The paper doesn't say what stands beyond the border: here the pictures are mirrored there, so that every pixel counts
-//! and small pictures can be compared.
+//! Means, variances and covariance of both pictures are taken under a bell around each pixel, and compared
+//! (equation 13 of the paper). Its constants are kept. As usual, the luminance is that of encoded colours
+//! (ITU-R BT.709's weights on sRGB), from 0 to 1. The paper doesn't define the values beyond the border: here
+//! the pictures are mirrored there, so that every pixel counts and small pictures can be compared.
 
 use super::filter::{Border, bell, filter};
 use varikernel::image::Image;
@@ -16,7 +16,8 @@ const C2: f64 = 0.03 * 0.03;
 const SIGMA: f64 = 1.5;
 const REACH: u32 = 5;
 
-/// The mean similarity over all pixels: 1 for the same picture, 0 for one that has nothing in common, less for a negative.
+/// The mean similarity over all pixels: 1 for the same picture, 0 for one that has nothing in common, less
+/// for a negative.
 pub(super) fn ssim(picture: &Image<[u8; 3]>, reference: &Image<[u8; 3]>) -> f64 {
     let (x, y) = (picture.map(luminance), reference.map(luminance));
     let bell = bell(SIGMA, REACH);
@@ -68,7 +69,8 @@ mod tests {
         assert!((ssim(&green, &white) - expected).abs() < 1e-12);
     }
 
-    /// Two pixels 0 and 1 against 1 and 0: means of p and 1 - p, a covariance of -p (1 - p), the same variances.
+    /// Two pixels 0 and 1 against 1 and 0: means of p and 1 - p, a covariance of -p (1 - p), the same
+    /// variances.
     #[test]
     fn a_negative_of_two_pixels_by_hand() {
         let size = UVec2::new(2, 1);
@@ -86,8 +88,9 @@ mod tests {
         assert!(found < -0.9, "a negative has less than nothing in common");
     }
 
-    /// `skimage.metrics.structural_similarity` of scikit-image 0.26.0 (NumPy 2.4.6), with Gaussian weights of sigma 1.5, not
-    /// the sample covariance, range 1: the mean of the full map, which SciPy mirrors at the border.
+    /// `skimage.metrics.structural_similarity` of scikit-image 0.26.0 (NumPy 2.4.6), with Gaussian weights of
+    /// sigma 1.5, not the sample covariance, range 1: the mean of the full map, which SciPy mirrors at the
+    /// border.
     #[test]
     fn as_scikit_image_has_it() {
         for (size, colour, expected) in [

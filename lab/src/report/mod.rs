@@ -1,4 +1,4 @@
-//! One page that holds a run against the thesis: `report.html`, its tables as CSV and its figures as SVG.
+//! One page that compares a run with the thesis: `report.html`, its tables as CSV and its figures as SVG.
 //!
 //! The page is self-contained: no file and no network is needed to read it, in light or dark.
 
@@ -15,7 +15,7 @@ use crate::thesis::claims::{self, Judged};
 use crate::thesis::evidence::Evidence;
 use crate::thesis::{figures, tables};
 
-/// What the page tells.
+/// The content of the page.
 #[derive(Clone, Copy, Debug)]
 pub struct Report<'a> {
     /// The command that made it.

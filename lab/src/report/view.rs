@@ -1,4 +1,4 @@
-//! What the page's template shows: every number as the text that stands there.
+//! The content of the page's template: every number as text.
 
 use std::fmt::Write as _;
 
@@ -186,7 +186,8 @@ fn milliseconds(ms: f64) -> String {
     if ms < 0.1 { format!("{ms:.4}") } else { format!("{ms:.3}") }
 }
 
-/// `table` as CSV: printed columns, ours in milliseconds and copies, ours over each card's, why a cell is missing.
+/// `table` as CSV: printed columns, ours in milliseconds and copies, ours over each card's, why a cell is
+/// missing.
 ///
 /// # Panics
 /// Never: memory takes all that is written.

@@ -1,8 +1,8 @@
 //! The thesis's tables and claims, timed and judged on this machine, in one go.
 //!
 //! What needs neither clock nor OpenGL is counted first; then come the timing runs, each part a run of
-//! [`bench`](mod@crate::bench) with a share of the budget, and last what the changes of chapter 6 gain. Everything is kept in a [`RunFile`],
-//! which is saved as it grows and can be gone on with.
+//! [`bench`](mod@crate::bench) with a share of the budget, and last what the changes of chapter 6 gain.
+//! Everything is kept in a [`RunFile`], which is saved as it grows and can be gone on with.
 
 mod gains;
 mod parts;
@@ -100,12 +100,12 @@ pub struct Progress<'a> {
 
 /// Times everything within `budget`, going on with `earlier`.
 ///
-/// `observe` is called after each set of samples, with all that is known by then: to save it and to show the progress.
-/// `full` takes the thesis's iterations for every cell instead of as many as the budget allows.
+/// `observe` is called after each set of samples, with all that is known by then: to save it and to show the
+/// progress. `full` takes the thesis's iterations for every cell instead of as many as the budget allows.
 ///
 /// # Errors
-/// [`Error::File`] if `earlier`, read from `path`, was measured on another device or by another version; [`Error::Gl`] if
-/// the driver fails; whatever `observe` fails with.
+/// [`Error::File`] if `earlier`, read from `path`, was measured on another device or by another version;
+/// [`Error::Gl`] if the driver fails; whatever `observe` fails with.
 pub fn time(
     gl: &Gl,
     (real_map, real_name): (&Image<u32>, &str),

@@ -67,7 +67,7 @@ impl Part {
     }
 }
 
-/// All parts; cheap ones first, so that a short budget leaves out the dear ones.
+/// All parts; cheap ones first, so that a short budget leaves out the expensive ones.
 pub(super) fn all(real_map: &Image<u32>, real_name: &str) -> Vec<Part> {
     let thesis_like: Vec<(MapInfo, Image<u32>)> = density::infer()
         .into_iter()
@@ -125,7 +125,7 @@ pub(super) fn all(real_map: &Image<u32>, real_name: &str) -> Vec<Part> {
     ]
 }
 
-/// A uniform map; its origin tells the mean radius, which [`orders`] reads again.
+/// A uniform map; its origin holds the mean radius, which [`orders`] reads again.
 fn order_map(density: f64) -> MapSource {
     let map = synth::map(Kind::Uniform, UVec2::splat(ORDER_SIDE), density, SEED);
     let mean = RadiusSummary::of(&reference::radius_by_table(&map, SEARCH)).mean;

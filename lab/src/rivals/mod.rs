@@ -1,9 +1,10 @@
-//! The same radii on the processor: what a renderer's times have to be held against.
+//! The same radii on the processor: baselines for a renderer's times.
 //!
-//! A method that is fast among its kind may still lose to plain code on the processor; on a software renderer, which is the
-//! processor, it does. So these are written for speed, as [`reference`](mod@varikernel::reference) is for clarity, and
-//! run beside the methods in [`bench`](super::bench), timed by the clock and checked alike. They read a map in memory and
-//! leave radii there; the way to a device and back is not in their times.
+//! A method that is fast among its kind may still lose to plain code on the processor; on a software
+//! renderer, which is the processor, it does. So these are written for speed, as
+//! [`reference`](mod@varikernel::reference) is for clarity, and run beside the methods in
+//! [`bench`](super::bench), timed by the clock and checked alike. They read a map in memory and leave radii
+//! there; transfers to a device and back are not in their times.
 
 mod scanline;
 mod tree;
@@ -19,7 +20,7 @@ use varikernel::image::Image;
 use varikernel::reference::Radii;
 use varikernel::settings::{Edges, Search};
 
-/// Which rival.
+/// Which rival (baseline).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Rival {
     /// An exact table and a warm-started search, on one core.
@@ -63,7 +64,7 @@ impl Rival {
                 return Err(Error::Setting {
                     name: "edges",
                     value: format!("{:?}", search.edges).to_lowercase(),
-                    reason: "a search for the nearest photons knows zero edges only".to_owned(),
+                    reason: "a search for the nearest photons supports zero edges only".to_owned(),
                 });
             }
         })

@@ -1,18 +1,19 @@
-//! A k-d tree of the photons, searched for the n nearest of each pixel: what a photon mapper has at hand.
+//! A k-d tree of the photons, searched for the n nearest of each pixel, as photon mappers do.
 //!
-//! The radius is the distance of the n-th nearest photon in the Chebyshev metric, at least 1; MR where fewer than n are
-//! within MR. Photons are at the centres of their pixels, so that distances are whole. It knows zero edges only: a
-//! nearest-neighbour search has no use for the area of a box.
+//! The radius is the distance of the n-th nearest photon in the Chebyshev metric, at least 1; MR where fewer
+//! than n are within MR. Photons are at the centres of their pixels, so that distances are whole. It supports
+//! zero edges only: a nearest-neighbour search does not involve the area of a box.
 //!
-//! The tree is built anew for each map, as it has to be for each frame of photons, by one core; the searches are shared
-//! out among all. A pixel's photons are one point with a count, at most n of which matter. That is the rival's best side: with a
-//! point for each photon, a tree of ten a pixel takes eight times as long to build and the whole up to twice as
-//! long, for the same radii.
+//! The tree is built anew for each map, as it has to be for each frame of photons, by one core; the searches
+//! are shared out among all. A pixel's photons are one point with a count, at most n of which matter. This
+//! favours the tree: with a point for each photon, a tree of ten a pixel takes eight times as long to build
+//! and the whole up to twice as long, for the same radii.
 //!
 //! Version 6 of the crate, which needs a newer Rust, takes as long and finds the same.
 //!
-//! Cost: O(log) nodes and the n nearest points for each pixel, with an allocation. Limit of exactness: coordinates are in
-//! f32, exact up to a side of 2^24; the rest is as right as the crate, which is checked like any method.
+//! Cost: O(log) nodes and the n nearest points for each pixel, with an allocation. Limit of exactness:
+//! coordinates are in f32, exact up to a side of 2^24; the rest depends on the crate, whose result is checked
+//! like any method's.
 
 use std::num::NonZero;
 

@@ -37,13 +37,13 @@ pub struct Bits {
     pub differing: u32,
 }
 
-/// What came of asking a renderer.
+/// The outcome for a renderer.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Found {
     /// It computed the maps.
     Ran(Bits),
-    /// This machine has no such device, as the text says.
+    /// This machine has no such device, for the reason in the text.
     NotThere(String),
     /// It is there and gave no answer: it crashed, or reported an error.
     Failed(String),
@@ -52,11 +52,11 @@ pub enum Found {
 /// A renderer that was tried.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Renderer {
-    /// How it was asked for: `osmesa`, `threads-8`.
+    /// How it was chosen: `osmesa`, `threads-8`.
     pub name: String,
     /// What it found.
     pub found: Found,
-    /// Whether it stands for a number of threads.
+    /// Whether it is a number of threads.
     pub of_threads: bool,
 }
 

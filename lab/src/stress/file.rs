@@ -26,7 +26,8 @@ const COLUMNS: [&str; 14] = [
 ];
 
 impl Report {
-    /// Writes everything as JSON, with where each number breaks, and the verdicts if it is complete, in one step.
+    /// Writes everything as JSON, with where each number breaks, and the verdicts if it is complete, in one
+    /// step.
     ///
     /// # Errors
     /// As [`write_atomically`].
@@ -34,7 +35,7 @@ impl Report {
         let breaks = self.breaks();
         write_atomically(path, |file| {
             let mut all = serde_json::to_value(self)?;
-            // Rows that are still to come would read as broken promises.
+            // Promises whose rows are still to come would read as broken.
             if self.complete {
                 all["promises"] = serde_json::to_value(self.judge())?;
             }

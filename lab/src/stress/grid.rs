@@ -41,7 +41,7 @@ impl Bench {
     }
 }
 
-/// All rows, each told as it comes with the share that is done.
+/// All rows, each passed on as it comes with the share that is done.
 pub(super) fn rows(
     gl: &Gl,
     settings: StressSettings,
@@ -128,7 +128,7 @@ impl Subject<'_> {
                 (promises, Verdict::kept_if(difference.is_none()), String::new())
             }
             Err(error) => {
-                // The pipeline itself has to refuse as well, whoever asks.
+                // The pipeline itself has to refuse as well.
                 let asked = bench.pipeline(gl, size, settings)?.render(&density).map(drop);
                 let verdict = Verdict::kept_if(matches!(asked, Err(Error::Inexact { .. })));
                 let text = error.to_string();
@@ -157,8 +157,9 @@ impl Subject<'_> {
     }
 }
 
-/// At each limit, and one photon past it: one bright pixel in the corner and a single photon elsewhere, n = 1. For u16 and
-/// u32 the photon is in the same box, n is the limit, and one more photon, in no box with them, makes the table wrap.
+/// At each limit, and one photon past it: one bright pixel in the corner and a single photon elsewhere, with
+/// n = 1. For u16 and u32 the photon is in the same box, n is the limit, and one more photon, in no box with
+/// them, makes the table wrap.
 fn limits(gl: &Gl) -> Result<Vec<Row>> {
     let mut rows = Vec::new();
     for (number, limit, promise, is_of_boxes) in [
@@ -196,8 +197,8 @@ fn limits(gl: &Gl) -> Result<Vec<Row>> {
     Ok(rows)
 }
 
-/// Whether what is refused a photon past a limit would have been wrong; a row of its own, since the refusal itself may be
-/// right all the same.
+/// Whether what is refused a photon past a limit would have been wrong; a row of its own, since the refusal
+/// itself may be right all the same.
 fn is_real(refused: &Row) -> Row {
     let is_wrong =
         refused.decision == Some(Decision::Refused) && refused.wrong.is_some_and(|wrong| wrong > 0);

@@ -1,4 +1,4 @@
-//! Which maps meet which numbers: sides, densities, shapes, and what is asked of them.
+//! Which maps meet which numbers: sides, densities, shapes, and the questions.
 
 use super::Extent;
 use super::number::Number;
@@ -8,7 +8,7 @@ use varikernel::settings::{Edges, Order, Search};
 /// MR of all questions.
 const MAX_RADIUS: u32 = 32;
 
-/// What is asked of a map of so many photons a pixel: n that a radius of about 5 holds, 25 at least.
+/// The question for a map of so many photons a pixel: n that a radius of about 5 holds, 25 at least.
 #[must_use]
 pub fn question(density: f64) -> Search {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates")]
@@ -27,7 +27,8 @@ pub(super) struct Level {
     pub(super) numbers: &'static [Number],
 }
 
-/// The brackets' boxes, of MR and 32 more, hold less than 2^32 of it, and maps of 256 x 256 more: for u32 alone.
+/// The brackets' boxes, of MR and 32 more, hold less than 2^32 of it, and maps of 256 x 256 more: for u32
+/// alone.
 const PAST_2_TO_THE_32: f64 = 100_000.0;
 /// Its shapes: of the others a box would hold more.
 const EVEN: &[Shape] = &[Shape::Uniform, Shape::HalfInShadow, Shape::Checkerboard];
@@ -71,7 +72,8 @@ pub(super) fn levels(extent: Extent, largest: u32) -> Vec<Level> {
     levels
 }
 
-/// What an extent leaves out of what the device can have: sides 64 to 4096, densities 4^-3 to 4^6, all shapes and numbers.
+/// What an extent leaves out of what the device can have: sides 64 to 4096, densities 4^-3 to 4^6, all shapes
+/// and numbers.
 pub(super) fn pruned(extent: Extent, largest: u32) -> Vec<String> {
     let mut pruned = match extent {
         Extent::Quick => {
@@ -112,7 +114,7 @@ mod tests {
         assert_eq!(rows(Extent::Full), 5 * 10 * 6 * 10 + 6);
         assert!(pruned(Extent::Full, 4096).is_empty() && rows(Extent::Usual) < rows(Extent::Full));
         assert!(levels(Extent::Full, 1024).iter().all(|level| level.side <= 1024));
-        // Where textures are larger, a few larger maps are run, and what they leave out is told.
+        // Where textures are larger, a few larger maps are run, and what they leave out is reported.
         let sides = |largest| levels(Extent::Full, largest).iter().map(|level| level.side).max();
         assert_eq!([4096, 8191, 16_384].map(sides), [4096, 4096, 8192].map(Some));
         assert_eq!(pruned(Extent::Full, 16_384).len(), 1);

@@ -1,9 +1,10 @@
 //! Numbers under stress: where sums break, and whether the program accepts only what it gets right.
 //!
-//! Every number in which sums can be kept meets maps of growing totals and unkind shapes ([`Number`], [`Shape`]), the
-//! definition's radii beside it; then the sums outside of the tables: ratios, blending, kernels; then the order of the photons,
-//! and the same maps on every renderer. Each [`Row`] backs one or more of the [`PROMISES`] that the documentation makes.
-//! What the program refuses is computed all the same, for information: those rows say where each number breaks.
+//! Every number in which sums can be kept meets maps of growing totals and adverse shapes ([`Number`],
+//! [`Shape`]), the definition's radii beside it; then the sums outside of the tables: ratios, blending,
+//! kernels; then the order of the photons, and the same maps on every renderer. Each [`Row`] backs one or
+//! more of the [`PROMISES`] that the documentation makes. What the program refuses is computed all the same,
+//! for information: those rows say where each number breaks.
 
 mod bits;
 mod breaks;
@@ -50,7 +51,7 @@ pub enum Extent {
 pub struct StressSettings {
     /// How much.
     pub extent: Extent,
-    /// Runs one of the numbers with a misprint of the thesis, to see that the rows tell.
+    /// Runs one of the numbers with a misprint of the thesis, to check that the rows show it.
     pub planted: bool,
 }
 
@@ -61,7 +62,7 @@ pub struct Report {
     pub program: String,
     /// The OpenGL device of all rows but those of other renderers.
     pub device: Device,
-    /// What was asked for.
+    /// The settings.
     pub settings: StressSettings,
     /// What was left out, in words.
     pub pruned: Vec<String>,
@@ -97,7 +98,8 @@ impl Report {
         }
     }
 
-    /// Adds what the renderers found, and the rows that compare it with the definition; with it a report is complete.
+    /// Adds what the renderers found, and the rows that compare it with the definition; with it a report is
+    /// complete.
     pub fn compare_renderers(&mut self, renderers: Vec<Renderer>) {
         self.rows.extend(bits::rows(&renderers));
         self.renderers = renderers;
@@ -117,8 +119,8 @@ impl Report {
     }
 }
 
-/// Runs everything that one context can tell; `each` is called after each row, to save and to show. The report is complete
-/// with [`Report::compare_renderers`].
+/// Runs everything that needs one context only; `each` is called after each row, to save and to show. The
+/// report is complete with [`Report::compare_renderers`].
 ///
 /// # Errors
 /// Those of the device, and of `each`.

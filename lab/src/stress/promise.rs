@@ -1,4 +1,4 @@
-//! What the documentation promises of numbers, and which rows back it.
+//! The promises of the documentation about numbers, and the rows that back them.
 
 use serde::Serialize;
 
@@ -86,7 +86,7 @@ pub const PROMISES: [Promise; 15] = [
     },
 ];
 
-/// A promise and what its rows say.
+/// A promise and the verdict of its rows.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Judged {
     /// The promise.
@@ -99,7 +99,7 @@ pub struct Judged {
     pub broken: Vec<String>,
 }
 
-/// The verdict on each promise. One that no row backs is broken: nobody looked.
+/// The verdict on each promise. One that no row backs counts as broken, since it was not tested.
 pub(super) fn judge(rows: &[Row]) -> Vec<Judged> {
     let judged = PROMISES.map(|promise| {
         let backing = |verdict| {

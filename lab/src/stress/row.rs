@@ -1,4 +1,4 @@
-//! One thing that was tried, and what came of it.
+//! One test and its outcome.
 
 use std::fmt;
 
@@ -10,11 +10,11 @@ use serde::{Deserialize, Serialize};
 pub enum Decision {
     /// Proved exact beforehand, so that it has to be right.
     Accepted,
-    /// Refused before anything was computed; what the row tells was computed all the same.
+    /// Refused before anything was computed; what the row reports was computed all the same.
     Refused,
 }
 
-/// What a row says of the promises that it backs.
+/// The verdict of a row on the promises that it backs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
@@ -49,14 +49,14 @@ impl fmt::Display for Verdict {
     }
 }
 
-/// One thing that was tried; what has no meaning for it is absent.
+/// One test and its outcome; fields that do not apply are absent.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Row {
     /// Its name: `grid/u32-scan/256/4096/spike`.
     pub id: String,
     /// The promises that it backs, by their ids.
     pub promises: Vec<String>,
-    /// What it says of them.
+    /// The verdict on them.
     pub verdict: Verdict,
     /// The number in which sums were kept.
     pub number: Option<String>,
@@ -78,7 +78,7 @@ pub struct Row {
     pub of: Option<u64>,
     /// The largest error: of a radius in pixels, or of a sum relative to it.
     pub largest_error: Option<f64>,
-    /// What a reader should know.
+    /// A note for the reader.
     pub note: String,
 }
 

@@ -1,4 +1,4 @@
-//! Maps that are unkind to sums.
+//! Maps that are adverse to sums.
 //!
 //! Unlike `synth`, which draws photon by photon, these draw pixel by pixel: they hold up to 7e10 photons.
 
@@ -30,7 +30,8 @@ pub enum Shape {
     Checkerboard,
     /// All in the middle row.
     OneRow,
-    /// All in the corner from which tables sum, an eighth of each side: all sums are large, and most boxes empty.
+    /// All in the corner from which tables sum, an eighth of each side: all sums are large, and most boxes
+    /// empty.
     Corner,
 }
 
@@ -52,9 +53,11 @@ impl Shape {
         }
     }
 
-    /// A map of `side` x `side` with `density` photons a pixel on average, beside a spike; the same for the same seed.
+    /// A map of `side` x `side` with `density` photons a pixel on average, beside a spike; the same for the
+    /// same seed.
     ///
-    /// A pixel whose mean is m gets a whole number between 0 and 2 m, each as likely, rounded up or down by chance.
+    /// A pixel whose mean is m gets a whole number between 0 and 2 m, each as likely, rounded up or down by
+    /// chance.
     ///
     /// # Panics
     /// If `side` is zero.

@@ -16,7 +16,7 @@ use varikernel::settings::{IrradianceSettings, Kernel, RadiusChoice};
 
 /// The relative error that a pixel's sum of kernels stays below, as `splat` promises.
 const SPLAT_ERROR: f64 = 1.0 / 512.0;
-/// The picture of the sums, of which one pixel is looked at.
+/// The picture of the sums, of which one pixel is used.
 const SIDE: u32 = 8;
 const MIDDLE: UVec2 = UVec2::new(4, 4);
 /// Photons that are uploaded at once.

@@ -1,11 +1,12 @@
 //! How far an estimate of density is from the truth: bias and noise apart.
 //!
-//! The estimate of a pixel is what its box holds over the box's area inside the map. Over independent seeds, *bias* is what
-//! the mean estimate is off, *noise* is how estimates vary around their mean, and the mean squared error is the sum
-//! of their squares. A box that grows until it holds n photons stops at a dense moment: its count over its area is
-//! too large on the average. Where the area ends exactly at the n-th photon, n - 1 in place of n is right (as in the
-//! nearest-neighbour estimate: D. O. Loftsgaarden, C. P. Quesenberry, 1965); boxes grow by whole pixels and hold c >= n, so the
-//! study measures what c - 1 in place of c does.
+//! The estimate of a pixel is what its box holds over the box's area inside the map. Over independent seeds,
+//! *bias* is what the mean estimate is off, *noise* is how estimates vary around their mean, and the mean
+//! squared error is the sum of their squares. A box that grows until it holds n photons stops at a dense
+//! moment: its count over its area is too large on the average. Where the area ends exactly at the n-th
+//! photon, n - 1 in place of n is right (as in the nearest-neighbour estimate: D. O. Loftsgaarden, C. P.
+//! Quesenberry, 1965); boxes grow by whole pixels and hold c >= n, so the study measures what c - 1 in place
+//! of c does.
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -69,7 +70,7 @@ pub enum Width {
 }
 
 impl Width {
-    /// Whether it waits for photons.
+    /// Whether it grows until it holds n photons.
     #[must_use]
     pub fn is_growing(self) -> bool {
         matches!(self, Self::Holding(_))
@@ -97,14 +98,15 @@ pub struct DensityRow {
     pub noise: f64,
     /// Root of the mean squared error, with its interval over seeds.
     pub rmse: Confidence,
-    /// The same with each pixel's squared error over its squared truth plus ε, the square of a tenth of the truth's root mean
-    /// square: dim pixels count as much as bright ones.
+    /// The same with each pixel's squared error over its squared truth plus ε, the square of a tenth of the
+    /// truth's root mean square: dim pixels count as much as bright ones.
     pub relative_rmse: Confidence,
     /// The two errors of each seed, in their order, to be paired with those of another estimate.
     pub of_seeds: Vec<[f64; 2]>,
 }
 
-/// Every estimate of every shape, the same bits whatever the number of threads. `observe` gets the part that is done.
+/// Every estimate of every shape, the same bits whatever the number of threads. `observe` gets the part that
+/// is done.
 ///
 /// # Errors
 /// Whatever `observe` fails with.
@@ -130,7 +132,7 @@ pub fn run<E>(
             .map(|width| {
                 let corrections: &[bool] = match width {
                     Width::Holding(_) => &[false, true],
-                    // It does not wait for a photon.
+                    // Its size does not depend on the photons, so that there is nothing to correct.
                     Width::Fixed(_) => &[false],
                 };
                 let found: Vec<Boxes> =
@@ -267,8 +269,8 @@ mod tests {
 
     #[test]
     fn bias_and_noise_by_hand() {
-        // Two pixels, two maps. The first is 1 too large and 3 too large: a mean of 2, a variance of 2. The second is 1 too
-        // small twice.
+        // Two pixels, two maps. The first is 1 too large and 3 too large: a mean of 2, a variance of 2. The
+        // second is 1 too small twice.
         let truth = [10.0, 5.0];
         let errors = Errors::of(&[vec![11.0, 4.0], vec![13.0, 4.0]], &truth);
         assert_eq!(errors.means, [0.0, 1.0]);
@@ -290,7 +292,7 @@ mod tests {
         let estimates = |corrected| boxes.estimates(corrected).collect::<Vec<_>>();
         assert_eq!(estimates(false), [2.0, 2.0, 1.0]);
         assert_eq!(estimates(true), [1.5, 5.0 / 3.0, 0.5]);
-        // Scaled edges: 4 of 3 x 1 in 9 x 1 pixels count as 4 · 9 / 2 where n = 7 asks for them.
+        // Scaled edges: 4 of 3 x 1 in 9 x 1 pixels count as 4 · 9 / 2 where n = 7 is compared.
         assert_eq!(Boxes::of(&map, Width::Holding(7), 9).mean_radius, 1.0);
     }
 

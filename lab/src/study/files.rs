@@ -13,8 +13,8 @@ use crate::PictureError;
 use varikernel::error::{Error, Result};
 use varikernel::image::write_atomically;
 
-/// What a row of `study.csv` says; a part of the study fills what it measures. Times stand last: all before them is the same
-/// at each run.
+/// What a row of `study.csv` says; a part of the study fills what it measures. Times stand last: all before
+/// them is the same at each run.
 #[derive(Debug, Default, Serialize)]
 struct Record<'a> {
     /// `radii`, `density` or `picture`.
@@ -39,7 +39,7 @@ struct Record<'a> {
     fixed_radius: Option<u32>,
     /// Whether c - 1 stands for the count c.
     corrected: Option<bool>,
-    /// Whether the library vouches for exact radii.
+    /// Whether the library guarantees exact radii.
     promised: Option<bool>,
     mean_radius: Option<f64>,
     /// Part of the pixels that MR ended.
@@ -155,7 +155,7 @@ impl<'a> Record<'a> {
     }
 }
 
-/// All of a study and what it says; reading takes the rows alone.
+/// All of a study with its summary; reading takes the rows alone.
 #[derive(Serialize)]
 struct WithSummary<'a> {
     #[serde(flatten)]
@@ -195,7 +195,8 @@ impl Study {
         Err(Error::file(path, format!("was made with {other}"), remedy))
     }
 
-    /// Writes JSON, the old file kept until the new one is whole: every row, and `summary`, what they say.
+    /// Writes JSON, the old file kept until the new one is whole: every row, and `summary`, their
+    /// conclusions.
     ///
     /// # Errors
     /// As [`write_atomically`].

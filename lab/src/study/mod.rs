@@ -1,12 +1,13 @@
-//! Run time against error: what each way to a radius map costs and how wrong it is, how far estimates of density are from
-//! the truth, and what both mean for pictures.
+//! Run time against error: what each way to a radius map costs and how wrong it is, how far estimates of
+//! density are from the truth, and what both mean for pictures.
 //!
 //! Three parts, each of which can be read alone:
 //!
-//! - [`radii`]: every method, build, storage and search against the exact radii, with approximations that are no
-//!   default anywhere; [`pareto`] says what to choose for which budget.
+//! - [`radii`]: every method, build, storage and search against the exact radii, with approximations that are
+//!   no default anywhere; [`pareto`] has what to choose for which budget.
 //! - [`density`]: bias and noise of estimates on densities whose truth is known.
-//! - [`pictures`]: variable radii against the best fixed ones on the shipped scenes, for equal photons and equal time.
+//! - [`pictures`]: variable radii against the best fixed ones on the shipped scenes, for equal photons and
+//!   equal time.
 //!
 //! Errors are the same to the last bit at each run with the same settings; times are not.
 
@@ -76,7 +77,7 @@ pub struct Study {
     pub commit: String,
     /// Where it ran.
     pub device: Device,
-    /// What was asked.
+    /// The settings.
     pub settings: StudySettings,
     /// Radius maps, question by question.
     pub radii: Vec<(Question, Answers)>,
@@ -107,7 +108,7 @@ impl Study {
         }
     }
 
-    /// What the rows say: the front of each question, comparisons, and sentences.
+    /// The conclusions from the rows: the front of each question, comparisons, and sentences.
     #[must_use]
     pub fn summary(&self) -> Summary {
         let of_question = |(question, answers): &(Question, Answers)| {
@@ -127,7 +128,7 @@ impl Study {
     }
 }
 
-/// What the rows of a study say.
+/// The conclusions from the rows of a study.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Summary {
     /// What to choose for which budget, for the first question.
@@ -147,9 +148,9 @@ pub struct Summary {
 /// Where a study is.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Progress {
-    /// What is being done, for people.
+    /// What is being done, to show.
     pub what: String,
-    /// Share of the work that is done, 0 to 1, as far as can be told.
+    /// Share of the work that is done, 0 to 1, as far as is known.
     pub done: f64,
 }
 

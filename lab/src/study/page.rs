@@ -16,7 +16,7 @@ struct Page<'a> {
     study: &'a Study,
     command: &'a str,
     environment: Vec<(&'static str, String)>,
-    /// The first question: what is said of it, its plot and its table.
+    /// The first question: its conclusions, its plot and its table.
     advice: Vec<String>,
     questions: Vec<QuestionView>,
     trends: Vec<String>,

@@ -1,4 +1,4 @@
-//! What nobody does both faster and better, and what to choose for which budget.
+//! The Pareto front of time and error, and what to choose for which budget.
 
 use std::cmp::Ordering;
 use std::fmt::Write as _;
@@ -21,7 +21,7 @@ pub struct Overall {
     pub wrong_share: f64,
     /// Bytes of textures.
     pub memory_bytes: u64,
-    /// Whether the library vouches for exact radii on every map.
+    /// Whether the library guarantees exact radii on every map.
     pub promised: bool,
     /// Whether no other way is both at most as slow and at most as wrong, and better in one of them.
     pub on_front: bool,
@@ -58,7 +58,7 @@ pub fn overall(rows: &[RadiusRow], question: Question) -> Vec<Overall> {
         });
     }
     all.sort_by(|a, b| a.copies.total_cmp(&b.copies));
-    // Right by luck is worse than right by promise.
+    // A result that happens to be exact ranks below one that is guaranteed to be.
     let points: Vec<_> = all.iter().map(|one| (one.copies, (one.mean_error, !one.promised))).collect();
     for index in front(&points) {
         all[index].on_front = true;
@@ -66,8 +66,8 @@ pub fn overall(rows: &[RadiusRow], question: Question) -> Vec<Overall> {
     all
 }
 
-/// Places of the (cost, error) pairs that no other beats, cheapest first: no other costs at most as much and is at most as
-/// wrong, and is better in one of both. Of equals, the first stands.
+/// Places of the (cost, error) pairs that no other beats, cheapest first: no other costs at most as much and
+/// is at most as wrong, and is better in one of both. Of equals, the first stands.
 #[must_use]
 pub fn front<E: PartialOrd + Copy>(points: &[(f64, E)]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..points.len()).collect();
@@ -103,7 +103,8 @@ pub fn advice(overall: &[Overall]) -> Vec<String> {
         } else {
             write!(
                 sentence,
-                "radii are off by {:.2} pixels on the average, and {:.1} % of the pixels have another radius.",
+                "radii are off by {:.2} pixels on the average, and {:.1} % of the pixels \
+                 have another radius.",
                 step.mean_error,
                 100.0 * step.wrong_share
             )
@@ -125,7 +126,7 @@ mod tests {
 
     #[test]
     fn the_front_by_hand() {
-        // The second is dearer and worse than the first; the fourth is dearer than the third and no better.
+        // The second is slower and worse than the first; the fourth is slower than the third and no better.
         let points = [(2.0, 0.5), (3.0, 0.6), (4.0, 0.1), (5.0, 0.1), (1.0, 0.9), (9.0, 0.0)];
         assert_eq!(front(&points), [4, 0, 2, 5]);
         assert_eq!(front(&[(1.0, 0.0), (1.0, 0.0), (1.0, 0.5)]), [0]);
@@ -175,8 +176,8 @@ mod tests {
             advice(&overall),
             [
                 "Below 3.0 copies a frame, nothing answers.",
-                "From 3.0 copies on, take half: radii are off by 0.50 pixels on the average, and 25.0 % of the pixels have \
-                 another radius.",
+                "From 3.0 copies on, take half: radii are off by 0.50 pixels on the average, and 25.0 % of \
+                 the pixels have another radius.",
                 "From 6.0 copies on, take exact: every radius is exact, on any map that is not refused.",
                 "More time than that buys nothing."
             ]

@@ -105,7 +105,8 @@ pub(super) fn by_question(overall: &[(Question, Vec<Overall>)]) -> Vec<String> {
     kinds.into_iter().filter_map(plot).collect()
 }
 
-/// Error of an estimate by the mean radius of its boxes: growing ones with and without correction, and fixed ones.
+/// Error of an estimate by the mean radius of its boxes: growing ones with and without correction, and fixed
+/// ones.
 pub(super) fn density(rows: &[DensityRow], shape: Shape) -> String {
     let line = |name: &str, colour, style, growing: bool, corrected: bool| {
         let mut points: Vec<Point> = rows
@@ -160,7 +161,8 @@ pub(super) fn stopping_rule(rows: &[DensityRow]) -> String {
     .svg()
 }
 
-/// Error of pictures over their time: variable radii with the best n, and the best fixed radius, for more and more photons.
+/// Error of pictures over their time: variable radii with the best n, and the best fixed radius, for more and
+/// more photons.
 pub(super) fn pictures(curves: &EqualTime) -> String {
     let line = |name: &str, colour, style, points: &[CurvePoint]| Series {
         name: name.to_owned(),

@@ -23,10 +23,11 @@ pub(super) struct Variant {
     pub(super) way: Way,
 }
 
-/// What a way is called in tables and files.
+/// The name of a way in tables and files.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct VariantName {
-    /// `brute-force`, `naive-mipmap`, `averaged-mipmap`, `pyramid`, `sat`, `half-density`, `grid-4`, `grid-8`.
+    /// `brute-force`, `naive-mipmap`, `averaged-mipmap`, `pyramid`, `sat`, `half-density`, `grid-4`,
+    /// `grid-8`.
     pub method: String,
     /// How a summed-area table is built: `scan`, `doubling-2` to `doubling-16`; else empty.
     pub build: String,
@@ -60,7 +61,8 @@ pub(super) enum Way {
     Grid(Search, u32),
 }
 
-/// Every way to answer a question: every method, build, storage and order that go together, then what approximates.
+/// Every way to answer a question: every method, build, storage and order that go together, then what
+/// approximates.
 pub(super) fn all(question: Search) -> Vec<Variant> {
     let mut variants: Vec<Variant> = pipelines(question).into_iter().map(Variant::pipeline).collect();
     let fast = Settings { search: question, ..Settings::default() };
@@ -131,7 +133,7 @@ fn pipelines(question: Search) -> Vec<Settings> {
                     }
                     // Its search is a climb of its own.
                     Method::NaiveMipmap if order != Order::Forward => (),
-                    // It knows f32 only.
+                    // It supports f32 only.
                     Method::AveragedMipmap if storage != Storage::F32 => (),
                     _ => all.push(one),
                 }
@@ -194,8 +196,8 @@ mod tests {
             let plain = variants.iter().filter(|of| of.name.twist.is_empty() && of.name.method == method);
             plain.count()
         };
-        // Two numbers and two orders; one climb in two numbers; one number and two orders; tables in u32 and u16 by five
-        // builds, in f32 by four, in the three others by one, in three orders each.
+        // Two numbers and two orders; one climb in two numbers; one number and two orders; tables in u32 and
+        // u16 by five builds, in f32 by four, in the three others by one, in three orders each.
         let methods = ["brute-force", "naive-mipmap", "averaged-mipmap", "pyramid", "sat"];
         assert_eq!(methods.map(count), [4, 2, 2, 4, 3 * (5 + 5 + 4 + 3)]);
         let twists = ["no guard", "as printed", "MR 8", "MR 16"];

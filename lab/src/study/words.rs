@@ -1,4 +1,4 @@
-//! What the numbers of a study say, in sentences.
+//! The conclusions of a study, in sentences.
 
 use super::density::{DensityRow, Width};
 use super::pictures::{EqualPhotons, EqualTime, Metric, Winner};
@@ -77,7 +77,7 @@ pub(super) fn stopping_rule(rows: &[DensityRow]) -> Vec<String> {
     words
 }
 
-/// A box, for people.
+/// A box, to show.
 pub(super) fn width(row: &DensityRow) -> String {
     match (row.width, row.corrected) {
         (Width::Holding(n), false) => format!("n = {n}"),
@@ -100,8 +100,8 @@ pub(super) fn pictures(equal_photons: &[EqualPhotons], equal_time: &[EqualTime])
         let of_time = equal_time.iter().filter(|one| one.metric == metric);
         let budgets = count(of_time.filter_map(|one| Some(one.budgets.last()?.winner)));
         words.push(format!(
-            "Pictures, {}: for equal photons, variable radii beat the best fixed one {} with the best n and {} with n = {n}; \
-             in the longest time that both reach, {}.",
+            "Pictures, {}: for equal photons, variable radii beat the best fixed one {} with the best n and \
+             {} with n = {n}; in the longest time that both reach, {}.",
             metric.name(),
             best,
             default,
@@ -169,10 +169,10 @@ mod tests {
         assert_eq!(
             density(&rows),
             [
-                "uniform, RMSE: 0.2000 ± 0.0100 (n = 10, c - 1, the widest tried) of the best variable estimate, \
-                 0.1000 ± 0.0100 (radius 3) of the best fixed one: fixed wins.",
-                "uniform, relative RMSE: 0.4000 ± 0.3000 (n = 10, c - 1, the widest tried) of the best variable estimate, \
-                 0.2000 ± 0.3000 (radius 3) of the best fixed one: level."
+                "uniform, RMSE: 0.2000 ± 0.0100 (n = 10, c - 1, the widest tried) of the best variable \
+                 estimate, 0.1000 ± 0.0100 (radius 3) of the best fixed one: fixed wins.",
+                "uniform, relative RMSE: 0.4000 ± 0.3000 (n = 10, c - 1, the widest tried) of the best \
+                 variable estimate, 0.2000 ± 0.3000 (radius 3) of the best fixed one: level."
             ]
         );
         assert_eq!(

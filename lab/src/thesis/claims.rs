@@ -1,7 +1,7 @@
-//! Every statement of the thesis that can be checked, and what this run says about it.
+//! Every statement of the thesis that can be checked, and the verdict of this run.
 //!
-//! The statements are `assets/thesis/claims.csv`, in our words; [`judge`] holds each against the [`Evidence`].
-//! A claim without evidence is [`Verdict::CannotBeTested`] with the reason, never left out.
+//! The statements are `assets/thesis/claims.csv`, in our words; [`judge`] checks each by the [`Evidence`]. A
+//! claim without evidence is [`Verdict::CannotBeTested`] with the reason, never left out.
 
 use std::fmt;
 use std::io::Write;
@@ -35,22 +35,22 @@ pub struct Claim {
     pub group: Group,
     /// Where the thesis says so.
     pub section: String,
-    /// What it says, in our words.
+    /// The statement, in our words.
     pub statement: String,
     /// Its figure.
     pub thesis: String,
 }
 
-/// What became of a claim.
+/// The verdict on a claim.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Verdict {
-    /// It holds in everything that was looked at.
+    /// It holds in everything that was tested.
     Confirmed,
     /// It does not hold.
     Refuted,
     /// It holds in the part that the note names, and not in the rest.
     HoldsHereOnly,
-    /// It was not looked at; the note says why.
+    /// It was not tested; the note says why.
     CannotBeTested,
 }
 
@@ -90,7 +90,7 @@ impl Judgement {
         Self::new(if holds { Verdict::Confirmed } else { Verdict::Refuted }, ours, note)
     }
 
-    /// By how many of the looked-at cases hold.
+    /// By how many of the tested cases hold.
     pub(super) fn by_cases(cases: &[bool], ours: impl Into<String>, note: impl Into<String>) -> Self {
         let verdict = match cases.iter().filter(|&&holds| holds).count() {
             _ if cases.is_empty() => Verdict::CannotBeTested,
@@ -183,7 +183,7 @@ pub fn write_csv(writer: impl Write, judged: &[Judged]) -> std::io::Result<()> {
     csv.flush()
 }
 
-/// The search that counted claims use unless told otherwise.
+/// The search that counted claims use by default.
 #[must_use]
 pub fn usual_search() -> Search {
     density::SEARCH
@@ -211,7 +211,7 @@ mod tests {
             let Judged { claim, judgement, .. } = one;
             if matches!(claim.group, Group::Timed | Group::Future | Group::Listing) {
                 assert_eq!(judgement.verdict, Verdict::CannotBeTested, "{}", claim.id);
-                assert!(!judgement.note.is_empty(), "{} says why", claim.id);
+                assert!(!judgement.note.is_empty(), "{} has a reason", claim.id);
             }
         }
     }

@@ -1,8 +1,8 @@
-//! What needs no clock: fetches, probes, passes and stack depths.
+//! Costs that need no clock: fetches, probes, passes and stack depths.
 //!
-//! A box of radius r is cut in as many ways as its corner has places against the blocks of the mipmap, so counts are
-//! ranges over all places: every corner modulo the smallest power of two that is no smaller than the box, and every
-//! pixel of a map on whose edges boxes are clipped.
+//! A box of radius r is cut in as many ways as its corner has places against the blocks of the mipmap, so
+//! counts are ranges over all places: every corner modulo the smallest power of two that is no smaller than
+//! the box, and every pixel of a map on whose edges boxes are clipped.
 
 use glam::UVec2;
 
@@ -82,8 +82,8 @@ fn cover(inside: Inside, top_level: u32, split: Split) -> Cover {
     pyramid::cover(inside, top_level, split, Faults::NONE)
 }
 
-/// The largest radius up to which a stack of `entries` is enough, and the depth that the next radius needs (none if
-/// all radii of `costs` fit).
+/// The largest radius up to which a stack of `entries` is enough, and the depth that the next radius needs
+/// (none if all radii of `costs` fit).
 #[must_use]
 pub fn stack_is_enough_up_to(costs: &[PyramidCost], split: Split, entries: usize) -> (u32, Option<usize>) {
     let of_split = || costs.iter().filter(|cost| cost.split == split);
@@ -113,7 +113,8 @@ pub fn binary_probes(max_radius: u32) -> u32 {
     max_radius.next_power_of_two().ilog2()
 }
 
-/// Passes that build a table of `side` x `side` with `samples` a pass, and the one before that copies the map.
+/// Passes that build a table of `side` x `side` with `samples` a pass, and the one before that copies the
+/// map.
 #[must_use]
 pub fn table_passes(side: u32, samples: u32) -> u32 {
     let mut passes = 0;
@@ -135,7 +136,8 @@ mod tests {
 
     #[test]
     fn fetches_that_geometry_settles() {
-        // Three consecutive pixels hold one aligned pair, so 3 x 3 is a block of 2 x 2 and 5 pixels wherever it is.
+        // Three consecutive pixels hold one aligned pair, so 3 x 3 is a block of 2 x 2 and 5 pixels wherever
+        // it is.
         assert_eq!(cost(1, Split::Odd).fetches, (6, 6));
         // 17 x 17 around an aligned 16 x 16 leaves 33 pixels.
         assert_eq!(cost(8, Split::Larger).fetches.0, 34);

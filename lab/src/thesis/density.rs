@@ -1,35 +1,37 @@
-//! How dense the thesis's unpublished input was, as far as its tables tell, and maps of that density.
+//! How dense the thesis's unpublished input was, as inferred from its tables, and maps of that density.
 //!
 //! # The derivation
-//! A forward search counts one box per radius until it is content: as many probes as the radius is long, so the mean
-//! number of probes is the mean radius. A binary search from 1 to MR = 32 counts log2 32 = 5 boxes, whatever the map.
-//! Table A.6 times both on one table. If a search costs `fixed + probes * p`, then
+//! A forward search counts one box per radius until one holds enough: as many probes as the radius is long,
+//! so the mean number of probes is the mean radius. A binary search from 1 to MR = 32 counts log2 32 = 5
+//! boxes, whatever the map. Table A.6 times both on one table. If a search costs `fixed + probes * p`, then
 //!
 //! ```text
 //! forward / binary = (fixed + mean radius * p) / (fixed + 5 p)
 //! ```
 //!
-//! Two readings bound what is fixed. With nothing fixed, mean radius = 5 forward / binary ([`Estimate::by_ratio`]).
-//! Table A.7 measures it: there the binary search takes 5, 6, 7 and 8 probes, a straight line whose intercept is
-//! `fixed` at 512 x 512. Taken as the same share of a binary search at every size, it gives
-//! [`Estimate::by_line`]. Both carry the rounding of three printed decimals ([`Estimate::rounding`]).
+//! Two readings bound what is fixed. With nothing fixed, mean radius = 5 forward / binary
+//! ([`Estimate::by_ratio`]). Table A.7 measures it: there the binary search takes 5, 6, 7 and 8 probes, a
+//! straight line whose intercept is `fixed` at 512 x 512. Taken as the same share of a binary search at every
+//! size, it gives [`Estimate::by_line`]. Both carry the rounding of three printed decimals
+//! ([`Estimate::rounding`]).
 //!
 //! # How far to trust it
-//! Not far: the two cards saw the same maps, and at 64 x 64 they tell radii that differ by more than 2. A GPU waits
-//! for the slowest of a group of pixels, so forward time follows a mean of maxima; binary probes lie far apart and
-//! miss the cache where forward ones do not. Both effects depend on the card. So [`Inference::mean_radius`] is the
-//! geometric mean of the cards' ratios, and [`Inference::low`] to [`Inference::high`] span all readings.
+//! Only roughly: the two cards had the same maps, and at 64 x 64 they give radii that differ by more than 2.
+//! A GPU waits for the slowest of a group of pixels, so forward time follows a mean of maxima; binary probes
+//! lie far apart and miss the cache where forward ones do not. Both effects depend on the card. So
+//! [`Inference::mean_radius`] is the geometric mean of the cards' ratios, and [`Inference::low`] to
+//! [`Inference::high`] span all readings.
 //!
-//! Table A.8 is a second witness. Brute force fetches Σ (2 r + 1)² texels for a pixel, so its time a pixel follows
-//! the radii steeply. From 128 to 1024 it hardly changes on either card: what A.6 shows at 1024 is not a map with
-//! radii more than twice those at 512, which would have cost brute force ten times as much a pixel. The likelier
-//! cause is a table that no longer fits the cache. [`Inference::by_brute_force`] is the mean radius that A.8 gives
-//! when 512 is taken from A.6, and it widens the span.
+//! Table A.8 is independent evidence. Brute force fetches Σ (2 r + 1)² texels for a pixel, so its time a
+//! pixel follows the radii steeply. From 128 to 1024 it hardly changes on either card: what A.6 shows at 1024
+//! is not a map with radii more than twice those at 512, which would have cost brute force ten times as much
+//! a pixel. The likelier cause is a table that no longer fits the cache. [`Inference::by_brute_force`] is the
+//! mean radius that A.8 gives when 512 is taken from A.6, and it widens the span.
 //!
 //! # The maps
-//! [`matching_map`] draws a seeded map and solves for the number of photons, with the definition as judge, until the
-//! mean radius is within [`TOLERANCE`] of the one wanted. The density grows from left to right, so that most radii
-//! are small and few are large, as the thesis describes its own (5.1).
+//! [`matching_map`] draws a seeded map and solves for the number of photons, with the definition as judge,
+//! until the mean radius is within [`TOLERANCE`] of the one wanted. The density grows from left to right, so
+//! that most radii are small and few are large, as the thesis describes its own (5.1).
 
 use glam::UVec2;
 
@@ -55,7 +57,7 @@ pub const TOLERANCE: f64 = 0.01;
 /// The distribution of [`matching_map`].
 const KIND: Kind = Kind::Gradient;
 
-/// What one card tells about one size.
+/// The inference from one card for one size.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
     /// The card.
@@ -68,7 +70,7 @@ pub struct Estimate {
     pub rounding: f64,
 }
 
-/// What both cards tell about one size.
+/// The inference from both cards for one size.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Inference {
     /// Side of the map.
@@ -163,7 +165,8 @@ pub fn line(points: &[(f64, f64)]) -> (f64, f64) {
     (slope, mean_y - slope * mean_x)
 }
 
-/// The radius whose work is that of `anchor` times what A.8 says a pixel of `size` costs beside one of [`ANCHOR`].
+/// The radius whose work is that of `anchor` times what A.8 says a pixel of `size` costs beside one of
+/// [`ANCHOR`].
 fn by_brute_force(card: Card, size: u32, anchor: f64) -> f64 {
     let a_pixel = |size: u32| printed(Quantity::BruteForce, card, size) / f64::from(size).powi(2);
     let wanted = work(anchor) * a_pixel(size) / a_pixel(ANCHOR);
@@ -215,8 +218,8 @@ pub struct MatchingMap {
 
 /// Draws a map of `size` whose mean radius, and so whose mean number of forward probes, is `mean_radius`.
 ///
-/// More photons from one seed are the same photons and some more, so the mean radius never grows with the density,
-/// and halving finds it.
+/// More photons from one seed are the same photons and some more, so the mean radius never grows with the
+/// density, and halving finds it.
 #[must_use]
 pub fn matching_map(size: UVec2, mean_radius: f64, seed: u64) -> MatchingMap {
     let drawn = |density: f64| {

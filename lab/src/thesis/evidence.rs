@@ -59,14 +59,14 @@ impl LargerSmaller {
     }
 }
 
-/// All that claims are judged by; what is empty was not looked at.
+/// All that claims are judged by; what is empty was not measured.
 #[derive(Clone, Debug, Default)]
 pub struct Evidence {
     /// Fetches and stack depths.
     pub pyramid_costs: Vec<PyramidCost>,
-    /// What each fault spoils, on [`Evidence::map`] and on one that hides none.
+    /// Which radii each fault makes wrong, on [`Evidence::map`] and on one on which each fault shows.
     pub faults: Vec<FaultRow>,
-    /// What a table in f32 spoils on it.
+    /// Which radii a table in f32 makes wrong on it.
     pub floats: Vec<FloatRow>,
     /// Radii with nothing outside against scaled ones, on it.
     pub edges: Option<LargerSmaller>,

@@ -1,7 +1,8 @@
-//! The density map of Figures 3.2 to 3.4, as far as they tell it.
+//! The density map of Figures 3.2 to 3.4, as far as they determine it.
 //!
-//! The figures give four numbers: 9 photons within radius 1, 41 within radius 2, 25 wanted, and a naive mipmap that
-//! is not content before level 3 of an 8 x 8 map. This map has all four: the pixel is the last of a thin quadrant.
+//! The figures give four numbers: 9 photons within radius 1, 41 within radius 2, 25 wanted, and a naive
+//! mipmap that finds too few before level 3 of an 8 x 8 map. This map has all four: the pixel is the last of
+//! a thin quadrant.
 
 use glam::UVec2;
 
@@ -33,7 +34,7 @@ pub fn map() -> Image<u32> {
     Image::from_values(UVec2::splat(8), counts)
 }
 
-/// What the definition and the naive mipmap answer for [`PIXEL`].
+/// The radii by the definition and by the naive mipmap for [`PIXEL`].
 #[must_use]
 pub fn radii() -> (u32, u32) {
     let at = |radii: &reference::Radii| radii.radius.at(PIXEL.x, PIXEL.y);

@@ -20,7 +20,8 @@ pub(super) fn counted(id: &str, evidence: &Evidence) -> Option<Judgement> {
             Judgement::confirmed_if(
                 sums == true_sums,
                 format!("up to radius 1, 2, 32: {} samples, not {}", list(&true_sums), list(&sums)),
-                "The inner sum is the box one radius smaller, without its middle; the samples are Σ (2 r + 1)².",
+                "The inner sum is the box one radius smaller, without its middle; the samples \
+                 are Σ (2 r + 1)².",
             )
         }
         "pyramid-fetches-1" => fetches(evidence, 1, |cost| cost.fetches.1 <= 5),
@@ -35,7 +36,8 @@ pub(super) fn counted(id: &str, evidence: &Evidence) -> Option<Judgement> {
             Judgement::confirmed_if(
                 (right, naive) == (2, 4),
                 format!("{naive}; {right}"),
-                "On a map made to the figures' counts: 9 photons within radius 1, 41 within radius 2, 25 wanted.",
+                "On a map made to the figures' counts: 9 photons within radius 1, 41 within \
+                 radius 2, 25 wanted.",
             )
         }
         "binary-probes" => Judgement::confirmed_if(
@@ -61,7 +63,7 @@ pub(super) fn counted(id: &str, evidence: &Evidence) -> Option<Judgement> {
             "Each level is a quarter of the one below: 1 + 1/4 + 1/16 + ... = 4/3.",
         ),
         "edges-zero" => match &evidence.edges {
-            None => Judgement::untested("no map was looked at"),
+            None => Judgement::untested("no map was measured"),
             Some(radii) => Judgement::confirmed_if(
                 radii.smaller == 0 && radii.larger > 0,
                 larger_smaller(radii),
@@ -97,8 +99,8 @@ const BRINK_PHOTONS: u32 = 1000;
 pub(super) fn listing(id: &str, evidence: &Evidence) -> Option<Judgement> {
     let (misjudged, judged) = listings::misjudged_by_float_ratio(counted::MAX_RADIUS, BRINK_PHOTONS);
     let ratio_note = format!(
-        "At the brink, {misjudged} of {judged} decisions are wrong at MR = {}, n = {BRINK_PHOTONS} if each operation \
-         rounds correctly, which GLSL does not promise of a division.",
+        "At the brink, {misjudged} of {judged} decisions are wrong at MR = {}, n = {BRINK_PHOTONS} if each \
+         operation rounds correctly, which GLSL does not promise of a division.",
         counted::MAX_RADIUS
     );
     let (fault, harmless) = match id {
@@ -130,7 +132,7 @@ pub(super) fn listing(id: &str, evidence: &Evidence) -> Option<Judgement> {
     };
     let rows: Vec<_> = evidence.faults.iter().filter(|row| row.fault == fault).collect();
     if rows.is_empty() {
-        return Some(Judgement::untested("no map was looked at"));
+        return Some(Judgement::untested("no map was measured"));
     }
     let wrong = rows.iter().any(|row| !row.difference.is_none());
     let ours: Vec<String> = rows
@@ -174,8 +176,8 @@ fn figure_3_4() -> Judgement {
     Judgement::by_cases(
         &fetches.map(|(fetches, _)| fetches == [6, 13]),
         ours.join(", "),
-        "At the pixel of Figure 3.3. 6 is the least for any 3 x 3 box, one block of 2 x 2 and five pixels, which \
-         contradicts 6.3.2.",
+        "At the pixel of Figure 3.3. 6 is the least for any 3 x 3 box, one block of 2 x 2 and five pixels, \
+         which contradicts 6.3.2.",
     )
 }
 
@@ -209,7 +211,7 @@ fn floats(evidence: &Evidence) -> Judgement {
     let wrong: Vec<_> = evidence.floats.iter().filter(|row| !row.difference.is_none()).collect();
     let Some(first) = wrong.iter().min_by_key(|row| row.total) else {
         return match evidence.floats.iter().map(|row| row.total).max() {
-            None => Judgement::untested("no map was looked at"),
+            None => Judgement::untested("no map was measured"),
             Some(most) => Judgement::new(Verdict::HoldsHereOnly, format!("right up to {most} photons"), ""),
         };
     };

@@ -68,7 +68,8 @@ pub(super) fn printed(id: &str) -> Option<Judgement> {
         "printed-ratio" => Judgement::new(
             Verdict::Refuted,
             "total over inside: 49/36",
-            "Outside over inside, 13/36, is what has to be added; taken as the factor it would shrink the count.",
+            "Outside over inside, 13/36, is what has to be added; taken as the factor it would \
+             shrink the count.",
         ),
         "printed-jump" => jump(),
         _ => return None,
@@ -157,8 +158,8 @@ fn jump() -> Judgement {
     Judgement::confirmed_if(
         by_brute_force > 0.8 * by_search,
         format!("mean radius {by_search:.1} by A.6, {by_brute_force:.1} by A.8"),
-        "Brute force costs the same a pixel at 512 and 1024 (A.8), which such radii would have made ten times \
-         dearer; a table that outgrows the cache is likelier.",
+        "Brute force costs the same a pixel at 512 and 1024 (A.8), which such radii would have made ten \
+         times dearer; a table that outgrows the cache is likelier.",
     )
 }
 

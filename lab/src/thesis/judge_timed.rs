@@ -48,7 +48,8 @@ pub(super) fn timed(id: &str, evidence: &Evidence) -> Option<Judgement> {
                 Judgement::confirmed_if(
                     (0.9..=1.1).contains(&exponent),
                     format!("exponent {exponent:.2}; {}", text(span, growth)),
-                    "Slope of log time over log pixels from 128 on, as the thesis has it; linear is 0.9 to 1.1.",
+                    "Slope of log time over log pixels from 128 on, as the thesis has it; \
+                     linear is 0.9 to 1.1.",
                 )
             })
         }

@@ -1,4 +1,5 @@
-//! What the faults of the listings spoil, and where a table in f32 breaks: on any map, without OpenGL.
+//! Which radii the faults of the listings make wrong, and where a table in f32 breaks: on any map, without
+//! OpenGL.
 
 use std::collections::BTreeSet;
 
@@ -70,8 +71,8 @@ pub fn fault_rows(density: &Image<u32>, map: &str, search: Search) -> Result<Vec
 
 /// Decisions at the brink that a rounded ratio gets wrong, and how many there are.
 ///
-/// For each box up to `max_radius` and each area that an edge or a corner can leave of it inside the map: the fewest
-/// photons that are enough, and one less.
+/// For each box up to `max_radius` and each area that an edge or a corner can leave of it inside the map: the
+/// fewest photons that are enough, and one less.
 #[must_use]
 pub fn misjudged_by_float_ratio(max_radius: u32, min_photons: u32) -> (u64, u64) {
     let search = Search { min_photons, max_radius, edges: Edges::Scale, order: Order::Forward };
@@ -109,8 +110,8 @@ pub struct FloatRow {
 
 /// The radii from a table of f32 sums, with each count of `density` and n multiplied by each of `factors`.
 ///
-/// That multiplication changes no radius, so any difference is rounding. Powers of two would not change the rounding
-/// either: take odd factors.
+/// That multiplication changes no radius, so any difference is rounding. Powers of two would not change the
+/// rounding either: take odd factors.
 ///
 /// # Errors
 /// None that a map can cause: both sides have its size.
@@ -150,7 +151,7 @@ fn radius_by_float_table(density: &Image<u32>, search: Search) -> Image<u32> {
 
 fn float_table(density: &Image<u32>) -> Image<f32> {
     let size = density.size();
-    #[expect(clippy::cast_precision_loss, reason = "the rounding of f32 is what is looked at")]
+    #[expect(clippy::cast_precision_loss, reason = "the rounding of f32 is what is tested")]
     let mut table = density.map(|count| count as f32);
     for axis in [UVec2::X, UVec2::Y] {
         let mut step = 1;

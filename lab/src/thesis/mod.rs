@@ -1,10 +1,11 @@
-//! The thesis as something that a run can be held against: its tables, its figures, its claims.
+//! The thesis, to compare a run with: its tables, its figures, its claims.
 //!
 //! - [`tables`], [`figures`]: what was printed, and which columns each figure draws.
 //! - [`quantity`]: what was timed, the key that printed and measured values share.
-//! - [`counted`], [`example`]: what needs no clock; fetches, stack depths, and the map of Figures 3.2 to 3.4.
-//! - [`density`]: how dense the unpublished input was, as far as the tables tell, and maps of that density.
-//! - [`listings`]: what the faults of the listings spoil, and where a table in f32 breaks.
+//! - [`counted`], [`example`]: costs that need no clock: fetches, stack depths, and the map of Figures 3.2 to
+//!   3.4.
+//! - [`density`]: how dense the unpublished input was, as inferred from the tables, and maps of that density.
+//! - [`listings`]: which radii the faults of the listings make wrong, and where a table in f32 breaks.
 //! - [`claims`]: every statement that can be checked, and how it is judged from the [`evidence`].
 
 pub mod claims;

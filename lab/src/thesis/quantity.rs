@@ -69,7 +69,7 @@ impl fmt::Display for Card {
     }
 }
 
-/// What became of one cell here.
+/// The outcome of one cell.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Timing {
     /// It was timed, and the answer was right.

@@ -1,4 +1,5 @@
-//! Files of results with numbers that no run would write: they are refused, or told as what they are, and never a panic.
+//! Files of results with numbers that no run would write: they are refused, or reported as they are, and
+//! never cause a panic.
 
 use std::path::{Path, PathBuf};
 
@@ -56,7 +57,8 @@ fn spoil(value: &mut Value, random: &mut Random, rarity: usize) {
     }
 }
 
-/// What `load` takes of `rounds` spoilt copies of a file, from changes everywhere to changes here and there.
+/// What `load` accepts of `rounds` damaged copies of a file, from changes everywhere to changes here and
+/// there.
 fn spoilt<T>(name: &str, rounds: u32, load: impl Fn(&Path) -> varikernel::Result<T>) -> Vec<T> {
     let folder = TempDir::new().unwrap();
     let path = folder.path().join("spoilt.json");

@@ -75,7 +75,7 @@ fn equal_photons_by_hand() {
             Metric::Flip => 0.1,
         };
         assert!(close(found.fixed.error.mean, 2.5 * unit), "{found:?}");
-        // Half of it with both seeds: sure. Nothing below 100 was tried.
+        // Half of it with both seeds: certain. Nothing below 100 was tried.
         assert_eq!((found.best.variable.width, found.best.variable.at_end), (n(100), true));
         assert!(close(found.best.ratio.ratio, 0.5), "{found:?}");
         assert_eq!(found.best.winner, Winner::Variable);
@@ -202,7 +202,8 @@ fn the_same_errors_twice_and_when_gone_on_with() {
     assert_eq!(errors(&second), errors(&first));
 }
 
-/// A radius of 9 pixels is planted: far too much for a picture of 24. The sweep leaves it, and stops behind the best.
+/// A radius of 9 pixels is planted: far too much for a picture of 24. The sweep leaves it, and stops behind
+/// the best.
 #[test]
 fn a_radius_that_is_too_large_loses() {
     let result = run(&egl(), &small(), Vec::new(), &mut |_, _| Ok(())).unwrap();

@@ -35,8 +35,8 @@ pub struct Input {
 
 /// A program of one fragment shader, and the GL_RGBA8 texture that it fills. Row 0 is the first in memory.
 ///
-/// It sets the state that it needs and puts nothing back, like egui, which draws next; the library's own calls put back what
-/// they touch, so that the three may follow each other in any order.
+/// It sets the state that it needs and puts nothing back, like egui, which draws next; the library's own
+/// calls put back what they touch, so that the three may follow each other in any order.
 #[derive(Debug)]
 pub struct Canvas {
     gl: Gl,
@@ -83,7 +83,7 @@ impl Canvas {
         }
     }
 
-    /// Draws at `size`, at least 1 x 1, and says where.
+    /// Draws at `size`, at least 1 x 1, and returns the texture.
     ///
     /// # Errors
     /// [`Error::Gl`] when memory runs out.
@@ -146,7 +146,7 @@ impl Canvas {
     /// Gives the texture its size, and attaches it to the bound framebuffer.
     unsafe fn allocate(&self, width: i32, height: i32) {
         let glow = self.gl.glow();
-        // SAFETY: as the caller vouches; without a buffer or data nothing is read.
+        // SAFETY: guaranteed by the caller; without a buffer or data nothing is read.
         unsafe {
             glow.bind_buffer(glow::PIXEL_UNPACK_BUFFER, None);
             glow.active_texture(glow::TEXTURE0);
@@ -180,7 +180,7 @@ impl Drop for Canvas {
 
 /// The uniforms of a linked program.
 unsafe fn locations(glow: &glow::Context, program: glow::Program) -> BTreeMap<String, glow::UniformLocation> {
-    // SAFETY: the caller vouches that the context is current and the program linked.
+    // SAFETY: the caller guarantees that the context is current and the program linked.
     unsafe {
         let active = (0..glow.get_active_uniforms(program))
             .filter_map(|index| glow.get_active_uniform(program, index));

@@ -1,4 +1,5 @@
-//! Libraries that winit loads at run time, some of them with a panic where they are missing: asked for first.
+//! Libraries that winit loads at run time, some of them with a panic where they are missing; they are checked
+//! first.
 
 use crate::error::{Error, Result};
 
@@ -13,7 +14,7 @@ const OF_X11: [(&str, &str); 6] = [
     ("libxkbcommon-x11.so.0", "libxkbcommon-x11-0"),
 ];
 
-/// Refuses to go on without a library that winit is about to load.
+/// Checks for the libraries that winit is about to load.
 ///
 /// # Errors
 /// [`Error::NoContext`] with the missing ones and their packages.
@@ -38,7 +39,8 @@ pub(super) fn check() -> Result<()> {
 
 #[cfg(all(unix, not(target_vendor = "apple")))]
 fn missing(libraries: &[(&str, &str)]) -> Result<()> {
-    // SAFETY: these libraries run no initialiser that could break an invariant of ours; winit loads them next.
+    // SAFETY: these libraries run no initialiser that could break an invariant of ours; winit loads them
+    // next.
     let is_missing = |name: &str| unsafe { libloading::Library::new(name) }.is_err();
     let (names, packages): (Vec<_>, Vec<_>) =
         libraries.iter().copied().filter(|(name, _)| is_missing(name)).unzip();

@@ -1,7 +1,7 @@
 //! A window with an OpenGL 3.3 core context, for a program that shows what the library makes.
 //!
-//! winit opens the window and glutin the context: EGL, GLX or WGL, whichever the display has. Nothing here knows of
-//! stages: [`Canvas`] draws the program's own shader, [`Picture`] holds its own pixels.
+//! winit opens the window and glutin the context: EGL, GLX or WGL, whichever the display has. Nothing here
+//! depends on the stages: [`Canvas`] draws the program's own shader, [`Picture`] holds its own pixels.
 
 mod canvas;
 mod libraries;
@@ -34,7 +34,8 @@ use crate::gl::Gl;
 /// The loop that brings a window's events: one for each process, on its main thread.
 ///
 /// # Errors
-/// [`Error::NoContext`] without a display, or without a library that windows need, by the name of its package.
+/// [`Error::NoContext`] without a display, or without a library that windows need, by the name of its
+/// package.
 ///
 /// # Panics
 /// On a thread that is not the main one, as winit does.
@@ -50,14 +51,15 @@ pub fn event_loop() -> Result<EventLoop<()>> {
         let reason = after.map_or(reason.as_str(), |(_, reason)| reason);
         Error::NoContext {
             reason: format!("no display to open a window on: {reason}"),
-            remedy: "set DISPLAY or WAYLAND_DISPLAY to a display that runs (`xvfb-run` makes one without a screen)"
+            remedy: "set DISPLAY or WAYLAND_DISPLAY to a display that runs (`xvfb-run` makes one \
+                     without a screen)"
                 .to_owned(),
         }
     })
 }
 
-/// A window, its surface, and its context, which is current on this thread as long as this or anything made from its
-/// [`Gl`] lives.
+/// A window, its surface, and its context, which is current on this thread as long as this or anything made
+/// from its [`Gl`] lives.
 #[derive(Debug)]
 pub struct GlWindow {
     gl: Gl,
@@ -84,11 +86,12 @@ impl Drop for Held {
 }
 
 impl GlWindow {
-    /// Opens a window, with 8 bits a colour, no depth and no samples, and makes its context current; frames wait for the
-    /// display where it lets them.
+    /// Opens a window, with 8 bits a colour, no depth and no samples, and makes its context current; frames
+    /// wait for the display's refresh where the driver supports it.
     ///
     /// # Errors
-    /// [`Error::NoContext`] with the platform's answer; [`Error::Version`] with what was found if it is older than 3.3.
+    /// [`Error::NoContext`] with the platform's answer; [`Error::Version`] with what was found if it is older
+    /// than 3.3.
     pub fn open(event_loop: &ActiveEventLoop, attributes: WindowAttributes) -> Result<Self> {
         let guard = ThreadGuard::take()?;
         let template =
@@ -110,14 +113,14 @@ impl GlWindow {
         let surface = unsafe { display.create_window_surface(&config, &attributes) }
             .map_err(|error| no_window("making the window's surface", &error))?;
         let context = context(&display, &config, handle.as_raw(), &surface)?;
-        // Some drivers have no say in this; frames then come as fast as they are drawn.
+        // Some drivers do not support this; frames then come as fast as they are drawn.
         if let Err(error) = surface.set_swap_interval(&context, SwapInterval::Wait(NonZeroU32::MIN)) {
             tracing::info!(%error, "frames do not wait for the display");
         }
         let held = Rc::new(Held { context, surface, window, _guard: guard });
         let loader = |name: &CStr| display.get_proc_address(name).cast::<c_void>();
-        // SAFETY: the context was just made current on this thread, the loader is its own, and `Gl` keeps it alive and
-        // can't leave the thread; the guard keeps a second context of ours from taking its place.
+        // SAFETY: the context was just made current on this thread, the loader is its own, and `Gl` keeps it
+        // alive and can't leave the thread; the guard keeps a second context of ours from taking its place.
         let (gl, glow) = unsafe {
             let gl = Gl::from_owned_context(Box::new(Rc::clone(&held)), loader)?;
             (gl, glow::Context::from_loader_function_cstr(loader))
@@ -184,14 +187,15 @@ fn context(
         .with_context_api(ContextApi::OpenGl(Some(Version::new(3, 3))))
         .with_profile(GlProfile::Core);
     make(wanted).map_err(|error| {
-        // A context that asks for little tells what there is.
+        // A context without requirements shows which version there is.
         let little = ContextAttributesBuilder::new()
             .with_context_api(ContextApi::OpenGl(Some(Version::new(2, 1))))
             .with_profile(GlProfile::Compatibility);
         let Ok(_old) = make(little) else {
             return no_window("making an OpenGL 3.3 core context", &error);
         };
-        // SAFETY: `_old` was just made current on this thread, and outlives the handle, which is dropped here.
+        // SAFETY: `_old` was just made current on this thread, and outlives the handle, which is dropped
+        // here.
         let found = unsafe { Gl::from_loader(|name| display.get_proc_address(name).cast()) };
         match found {
             Err(found) => match environment::obstacle(&environment::get) {

@@ -40,8 +40,8 @@ impl Picture {
     pub fn copy_of(gl: &Gl, texture: glow::Texture, format: TextureFormat, size: UVec2) -> Result<Self> {
         let copy = Self::new(gl, format, size, None)?;
         let glow = gl.glow();
-        // SAFETY: the context is current while the handle lives; the texture bound is the copy, and what is read is attached
-        // to a framebuffer of ours.
+        // SAFETY: the context is current while the handle lives; the texture bound is the copy, and what is
+        // read is attached to a framebuffer of ours.
         unsafe {
             let framebuffer = glow.create_framebuffer().map_err(|what| gl.failure(&what))?;
             glow.bind_framebuffer(glow::READ_FRAMEBUFFER, Some(framebuffer));
@@ -63,7 +63,8 @@ impl Picture {
             return Err(Error::TooLarge { size, limit });
         }
         let glow = gl.glow();
-        // SAFETY: the context is current while the handle lives, and the slice, if any, holds size.x * size.y texels.
+        // SAFETY: the context is current while the handle lives, and the slice, if any, holds size.x * size.y
+        // texels.
         unsafe {
             let texture = glow.create_texture().map_err(|what| gl.failure(&what))?;
             let picture = Self { gl: gl.clone(), texture, size };

@@ -8,19 +8,22 @@ use table::{DEPTH_TESTS, PASSES, Row, STENCIL_TESTS, Values};
 
 use super::Gl;
 
-/// What the library does about a host's OpenGL state; a property of a [`Gl`] handle and of all that is made from it.
+/// How the library treats a host's OpenGL state; a property of a [`Gl`] handle and of all that is made from
+/// it.
 ///
 /// The page [`state_contract`](crate::gl::state_contract) lists every state that this is about.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum StatePolicy {
-    /// Each call asks the driver for what it touches, and puts it back: safe in any host, for about 70 questions a call.
+    /// Each call queries the states that it touches, and restores them: safe in any host, for about 70
+    /// queries a call.
     #[default]
     Restore,
-    /// The host vouches that what a call touches has OpenGL's default values when it starts, and finds the same when it
-    /// returns, failed or not. No call of a frame asks the driver for anything but errors.
+    /// The host guarantees that what a call touches has OpenGL's default values when it starts, and finds the
+    /// same when it returns, failed or not. No call of a frame queries anything but errors.
     ///
-    /// The viewport has no default that is the same everywhere: it is left as the last pass had it, and the host sets
-    /// its own before it draws. Framebuffer 0 is bound afterwards, whatever the host's window draws to.
+    /// The viewport has no default that is the same everywhere: it is left as the last pass had it, and the
+    /// host sets its own before it draws. Framebuffer 0 is bound afterwards, whatever the host's window draws
+    /// to.
     Defaults,
 }
 
@@ -69,8 +72,8 @@ impl StateGuard {
         Self { gl: gl.clone(), rows: DEPTH_TESTS, before: Before::of(gl, DEPTH_TESTS) }
     }
 
-    /// Saves what a test of the host's stencil touches, inside of a guard of the rest, while a framebuffer with stencil is
-    /// drawn to.
+    /// Saves what a test of the host's stencil touches, inside of a guard of the rest, while a framebuffer
+    /// with stencil is drawn to.
     pub(super) fn of_stencil_tests(gl: &Gl) -> Self {
         Self { gl: gl.clone(), rows: STENCIL_TESTS, before: Before::of(gl, STENCIL_TESTS) }
     }

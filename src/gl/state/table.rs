@@ -1,8 +1,9 @@
-//! The table of what the library touches: how each state is read and set, OpenGL's default, and what passes rely on.
+//! The table of what the library touches: how each state is read and set, OpenGL's default, and what passes
+//! rely on.
 //!
 //! Saving, putting back and setting defaults all go through it, and its names are those of the page
-//! [`state_contract`](crate::gl::state_contract), which a test compares. The stencil test needs no change but for
-//! masks, since the framebuffers drawn to have no such buffer; multisampling likewise.
+//! [`state_contract`](crate::gl::state_contract), which a test compares. The stencil test needs no change but
+//! for masks, since the framebuffers drawn to have no such buffer; multisampling likewise.
 
 use std::num::NonZeroU32;
 
@@ -21,7 +22,7 @@ pub(super) type Values = [i32; 4];
 /// A state, or one of each texture unit or draw buffer.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Row {
-    /// The enums by which the driver is asked for it.
+    /// The enums by which it is queried.
     parameters: &'static [u32],
     /// Their names, for the comparison with the page.
     #[cfg(test)]
@@ -111,9 +112,10 @@ const fn integer(value: i32) -> Values {
     [value, 0, 0, 0]
 }
 
-/// What every public call touches. It is read from the first row to the last, and put back from the last to the first.
+/// What every public call touches. It is read from the first row to the last, and put back from the last to
+/// the first.
 pub(super) static PASSES: &[Row] = &[
-    // First, since asking for what a unit holds changes it.
+    // First, since querying what a unit holds changes it.
     row!(Setting::ActiveTexture, [ACTIVE_TEXTURE], Some(enums([glow::TEXTURE0])), None),
     row!(
         Setting::Unit,
@@ -147,7 +149,7 @@ pub(super) static PASSES: &[Row] = &[
     row!(Setting::DepthMask, [DEPTH_WRITEMASK], Some(integer(1)), None),
     off!(DEPTH_CLAMP),
     off!(POLYGON_OFFSET_FILL),
-    // A vertex shader that draws points says how large they are, where it draws them.
+    // A vertex shader that draws points sets their size itself, where it draws them.
     off!(PROGRAM_POINT_SIZE),
     off!(CULL_FACE),
     off!(SCISSOR_TEST),
@@ -192,7 +194,8 @@ pub(super) static DEPTH_TESTS: &[Row] = &[
 
 /// What masks made of a host's stencil buffer touch besides.
 ///
-/// A driver tells the reference as far as the framebuffer that is drawn to has bits for it: it has to be one of a stencil.
+/// A driver returns as many bits of the reference as the framebuffer that is drawn to has: it needs a stencil
+/// buffer.
 pub(super) static STENCIL_TESTS: &[Row] = &[
     row!(Setting::Capability, [STENCIL_TEST], OFF, None),
     row!(
@@ -222,7 +225,7 @@ pub(super) static STENCIL_TESTS: &[Row] = &[
 ];
 
 impl Row {
-    /// Asks the driver for the values of one instance.
+    /// Queries the values of one instance.
     pub(super) fn read(&self, gl: &Gl, instance: u32) -> Values {
         let glow = gl.glow();
         let mut values = [0; 4];
@@ -263,7 +266,8 @@ impl Row {
         let enums = values.map(i32::cast_unsigned);
         let name = |value: i32| NonZeroU32::new(value.cast_unsigned());
         let texture = |value| name(value).map(glow::NativeTexture);
-        // SAFETY: the context is current while the handle lives; the values were read from it, or are OpenGL's own.
+        // SAFETY: the context is current while the handle lives; the values were read from it, or are
+        // OpenGL's own.
         unsafe {
             match self.setting {
                 Setting::ActiveTexture => glow.active_texture(enums[0]),

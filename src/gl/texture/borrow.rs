@@ -18,7 +18,7 @@ const SWIZZLES: [(u32, u32, &str); 4] = [
 ];
 
 impl Texture {
-    /// Wraps a map that stays the host's, after asking the driver what it is.
+    /// Wraps a map that stays the host's, after querying what it is.
     ///
     /// # Errors
     /// [`Error::Mismatch`] if it is not a two-dimensional texture of a known format with level 0 as its base.
@@ -29,8 +29,8 @@ impl Texture {
     /// Wraps a texture of one of `formats` that stays the host's; `what` it is, for errors.
     ///
     /// # Errors
-    /// [`Error::Mismatch`] if it is not a two-dimensional texture of such a format with level 0 as its base, and each value
-    /// where it belongs.
+    /// [`Error::Mismatch`] if it is not a two-dimensional texture of such a format with level 0 as its base,
+    /// and each value where it belongs.
     pub(crate) fn borrow_as(
         gl: &Gl,
         name: glow::Texture,
@@ -39,8 +39,8 @@ impl Texture {
     ) -> Result<Self> {
         let mismatch = |expected: String, got: String| Error::Mismatch { what, expected, got };
         let glow = gl.current()?;
-        // SAFETY: the context is current while the handle lives; a name of another target is an error that is
-        // asked for at once.
+        // SAFETY: the context is current while the handle lives; a name of another target is an error, which
+        // is checked for at once.
         let (internal, size, base) = unsafe {
             glow.active_texture(glow::TEXTURE0);
             glow.bind_texture(glow::TEXTURE_2D, Some(name));
@@ -92,8 +92,8 @@ impl Texture {
             expected: "a GL_TEXTURE_2D with depth".to_owned(),
             got,
         };
-        // SAFETY: the context is current while the handle lives; a name of another target is an error that is asked for at
-        // once.
+        // SAFETY: the context is current while the handle lives; a name of another target is an error, which
+        // is checked for at once.
         let [width, height, bits] = unsafe {
             glow.active_texture(glow::TEXTURE0);
             glow.bind_texture(glow::TEXTURE_2D, Some(name));

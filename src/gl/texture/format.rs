@@ -24,7 +24,7 @@ pub enum TextureFormat {
     Rgb32Float,
     /// GL_RGB16F: a host's normals or colours; its fourth value reads 1.
     Rgb16Float,
-    /// GL_DEPTH_COMPONENT32F: what hides what.
+    /// GL_DEPTH_COMPONENT32F: depth buffers.
     Depth32Float,
 }
 

@@ -34,7 +34,8 @@ impl Texture {
     /// Allocates all levels and layers, contents undefined.
     ///
     /// # Errors
-    /// [`Error::TooLarge`]; [`Error::OutOfMemory`]; [`Error::ContextLost`]; [`Error::Gl`] if the driver fails.
+    /// [`Error::TooLarge`]; [`Error::OutOfMemory`]; [`Error::ContextLost`]; [`Error::Gl`] if the driver
+    /// fails.
     pub(crate) fn of(gl: &Gl, shape: TextureShape) -> Result<Self> {
         let TextureShape { format, size, levels, .. } = shape;
         let limit = gl.info().max_texture_size;
@@ -42,8 +43,8 @@ impl Texture {
             return Err(Error::TooLarge { size, limit });
         }
         let glow = gl.current()?;
-        // SAFETY: the context is current while the handle lives, and no unpack buffer is bound (StateGuard), so
-        // `None` allocates.
+        // SAFETY: the context is current while the handle lives, and no unpack buffer is bound (StateGuard),
+        // so `None` allocates.
         let texture = unsafe {
             let name = glow.create_texture().map_err(|what| gl.failure(&what))?;
             let texture = Self { gl: gl.clone(), name, shape, ours: true };
@@ -114,7 +115,7 @@ impl Texture {
     /// Replaces level 0.
     ///
     /// # Panics
-    /// If the image's size or type does not fit: our own mistake.
+    /// If the image's size or type does not fit, which is a bug of the library.
     pub(crate) fn upload<T: Pod>(&self, image: &Image<T>) {
         assert_eq!(image.size(), self.size(), "image and texture");
         assert_eq!(size_of::<T>(), self.shape.format.texel_bytes(), "value and texel");
@@ -123,7 +124,8 @@ impl Texture {
         let (components, kind) = self.shape.format.transfer();
         let size = self.size().as_ivec2();
         let bytes = bytemuck::cast_slice(image.values());
-        // SAFETY: the slice holds size.x * size.y texels of this format, tightly packed as StateGuard sets it.
+        // SAFETY: the slice holds size.x * size.y texels of this format, tightly packed as StateGuard sets
+        // it.
         unsafe {
             glow.tex_sub_image_2d(
                 glow::TEXTURE_2D,
@@ -139,10 +141,10 @@ impl Texture {
         }
     }
 
-    /// Reads a level back; waits for the GPU. Zeros if the context is lost, which [`Gl::check`] tells.
+    /// Reads a level back; waits for the GPU. Zeros if the context is lost, which [`Gl::check`] reports.
     ///
     /// # Panics
-    /// If the type does not fit the format: our own mistake.
+    /// If the type does not fit the format, which is a bug of the library.
     pub(crate) fn read<T: Pod>(&self, level: u32) -> Image<T> {
         assert_eq!(size_of::<T>(), self.shape.format.texel_bytes(), "value and texel");
         let size = self.level_size(level);
@@ -204,7 +206,7 @@ impl Texture {
         let layers =
             self.shape.layers.map_or(vec![None], |layers| (0..layers.cast_signed()).map(Some).collect());
         for (layer, attachment) in layers.into_iter().zip(attachments) {
-            // SAFETY: as the caller vouches; level and layer exist.
+            // SAFETY: guaranteed by the caller; level and layer exist.
             unsafe {
                 match layer {
                     None => glow.framebuffer_texture_2d(

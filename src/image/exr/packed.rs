@@ -1,7 +1,7 @@
 //! Which compressions are read, and what their decoders must not be given.
 //!
-//! Some compressions pack channels of some sample types with a loss, and store others as they are: B44 alters f16 alone, PXR24
-//! f32 alone, and DWA f16 and f32 by their channels' names; u32 is never altered.
+//! Some compressions pack channels of some sample types with a loss, and store others as they are: B44 alters
+//! f16 alone, PXR24 f32 alone, and DWA f16 and f32 by their channels' names; u32 is never altered.
 
 use exr::block::chunk::{Chunk, CompressedBlock};
 use exr::math::Vec2;
@@ -23,8 +23,12 @@ pub(super) fn check_lossless(compression: Compression, sample_type: SampleType) 
         _ => false,
     };
     if is_lossy {
-        let problem =
-            format!("{compression} of {sample_type:?} samples is lossy, so that values may be altered");
+        let samples = match sample_type {
+            SampleType::F16 => "f16",
+            SampleType::F32 => "f32",
+            SampleType::U32 => "u32",
+        };
+        let problem = format!("{compression} of {samples} samples is lossy, so that values may be altered");
         return Err(Problem::new(problem, REMEDY));
     }
     check_supported(compression)
@@ -51,7 +55,8 @@ pub(super) fn check_decodable(compression: Compression, sample_type: SampleType)
     }
 }
 
-/// Makes a chunk one that its decoder stands: what nobody asked for is blanked, and claims out of proportion are refused.
+/// Makes a chunk safe for its decoder: channels that are not wanted are blanked, and implausible sizes are
+/// refused.
 pub(super) fn tame(header: &Header, chunk: &mut Chunk) -> Result<(), Problem> {
     let place = header.get_block_data_indices(&chunk.compressed_block).map_err(problem)?;
     let Vec2(width, height) = header.get_absolute_block_pixel_coordinates(place).map_err(problem)?.size;
@@ -76,9 +81,10 @@ pub(super) fn tame(header: &Header, chunk: &mut Chunk) -> Result<(), Problem> {
     Ok(())
 }
 
-/// Replaces the packed blocks of f16 channels in B44 by blocks of the same length on which the decoder does not overflow.
+/// Replaces the packed blocks of f16 channels in B44 by blocks of the same length on which the decoder does
+/// not overflow.
 fn blank_halves(channels: &ChannelList, [width, height]: [usize; 2], bytes: &mut [u8]) {
-    // The third byte tells blocks of one value from blocks of 16; so do OpenEXR and `exr`.
+    // The third byte distinguishes blocks of one value from blocks of 16, as in OpenEXR and `exr`.
     const SHORT: usize = 3;
     const LONG: [u8; 14] = [0x80, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0];
     const FIRST_SHORT: u8 = 13 << 2;
@@ -97,17 +103,19 @@ fn blank_halves(channels: &ChannelList, [width, height]: [usize; 2], bytes: &mut
                 block.copy_from_slice(&LONG);
                 place += LONG.len();
             } else {
-                // Too short, as the decoder will say.
+                // Too short, which the decoder reports.
                 return;
             }
         }
     }
 }
 
-/// Refuses a DWA chunk whose counters ask for more memory than its pixels take: the decoder allocates what they say.
+/// Refuses a DWA chunk whose counters ask for more memory than its pixels take: the decoder allocates as
+/// much.
 fn check_claims(channels: &ChannelList, size: [u64; 2], bytes: &[u8]) -> Result<(), Problem> {
-    // Eleven numbers of 8 bytes begin a chunk: version; bytes of the plain channels, unpacked and packed; packed bytes of the
-    // coefficients AC and DC; bytes of run lengths, packed, unpacked and as pixels; the numbers of AC and of DC; a method.
+    // Eleven numbers of 8 bytes begin a chunk: version; bytes of the plain channels, unpacked and packed;
+    // packed bytes of the coefficients AC and DC; bytes of run lengths, packed, unpacked and as pixels; the
+    // numbers of AC and of DC; a method.
     const PLAIN: usize = 1;
     const RUNS: usize = 6;
     const RUN_PIXELS: usize = 7;

@@ -85,7 +85,8 @@ pub(in crate::image) fn read(
     counts.finish()
 }
 
-/// Reads the channels of the first layer as one mask: 1 where any is not 0, and `A`, if there is one, is neither.
+/// Reads the channels of the first layer as one mask: 1 where any is not 0, and `A`, if there is one, is
+/// neither.
 pub(in crate::image) fn read_mask(
     file: impl BufRead + Seek,
     length: u64,
@@ -152,7 +153,7 @@ pub(in crate::image) fn read_rgb(
     Ok(picture)
 }
 
-/// The file's headers, if none asks for more than `options` allow or than `length` bytes can hold.
+/// The file's headers, if none claims more than `options` allow or than `length` bytes can hold.
 fn open<R: BufRead + Seek>(file: R, length: u64, options: &ReadOptions<'_>) -> Result<Reader<R>, Problem> {
     let reader = exr::block::read(file, false).map_err(problem)?;
     check_headers(reader.headers(), length, options)?;
@@ -164,8 +165,8 @@ fn size_of(header: &Header, options: &ReadOptions<'_>) -> Result<UVec2, Problem>
     options.check_size(width as u64, height as u64)
 }
 
-/// Hands out every sample at the largest resolution: which of the chosen channels it is of, its pixel, counted row after row,
-/// and its value.
+/// Hands out every sample at the largest resolution: which of the chosen channels it is of, its pixel,
+/// counted row after row, and its value.
 fn for_each_sample<R: BufRead + Seek>(
     reader: Reader<R>,
     chosen: &Chosen,
@@ -231,7 +232,8 @@ fn put_line(
     Ok(())
 }
 
-/// Refuses what would take memory out of proportion, in any layer: the blocks of all of them are passed through.
+/// Refuses what would take memory out of proportion, in any layer: the blocks of all of them are passed
+/// through.
 fn check_headers(headers: &[Header], length: u64, options: &ReadOptions<'_>) -> Result<(), Problem> {
     let mut least_length = 0;
     for header in headers {
@@ -245,7 +247,8 @@ fn check_headers(headers: &[Header], length: u64, options: &ReadOptions<'_>) -> 
         if block_bytes > limit {
             return Err(Problem::new(
                 format!(
-                    "the header claims blocks of {block_width} x {block_height} pixels, more than {limit} bytes"
+                    "the header claims blocks of {block_width} x {block_height} pixels, more \
+                     than {limit} bytes"
                 ),
                 "save it with scan lines or smaller tiles",
             ));
@@ -255,13 +258,15 @@ fn check_headers(headers: &[Header], length: u64, options: &ReadOptions<'_>) -> 
     }
     if length < least_length {
         return Err(Problem::damaged(format!(
-            "truncated: the header claims blocks that take at least {least_length} bytes, the file has {length}"
+            "truncated: the header claims blocks that take at least {least_length} bytes, the \
+             file has {length}"
         )));
     }
     Ok(())
 }
 
-/// Each channel: its own name, its name with that of its layer, and the numbers of the layer and of the channel.
+/// Each channel: its own name, its name with that of its layer, and the numbers of the layer and of the
+/// channel.
 fn names(headers: &[Header]) -> Vec<(String, String, (usize, usize))> {
     let of_layer = |(layer, header): (usize, &Header)| {
         let prefix =

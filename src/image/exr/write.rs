@@ -44,7 +44,7 @@ pub(in crate::image) fn write_channels(
 ) -> io::Result<()> {
     let fits = |name: &str| name.is_ascii() && (1..=255).contains(&name.len());
     let (width, height) = (size.x as usize, size.y as usize);
-    // The format wants them sorted.
+    // The format requires them sorted.
     let mut channels: Vec<_> = channels.iter().collect();
     channels.sort_by(|(a, _), (b, _)| a.as_bytes().cmp(b.as_bytes()));
     let describe = |(name, samples): &&(String, Samples<'_>)| {

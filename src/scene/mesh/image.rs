@@ -53,7 +53,7 @@ fn format(bytes: &[u8]) -> Result<ImageFormat, String> {
     }
     match guess_format(bytes) {
         Ok(format @ (ImageFormat::Png | ImageFormat::Jpeg)) => Ok(format),
-        Ok(other) => Err(format!("it is {other:?}, and only PNG and JPEG are supported")),
+        Ok(other) => Err(format!("it is {}, and only PNG and JPEG are supported", other.to_mime_type())),
         Err(_) => Err("it is neither PNG nor JPEG".to_owned()),
     }
 }

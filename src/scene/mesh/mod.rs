@@ -21,7 +21,8 @@ pub(super) struct Mesh {
     pub(super) materials: Vec<Material>,
     /// Lights of the file that are no surfaces, in the coordinates of the parts.
     pub(super) lights: Vec<Light>,
-    /// What the file holds and the picture will lack, each in a few words: `morph targets`, `texture "bark.webp" (WebP)`.
+    /// What the file holds and the picture will lack, each in a few words: `morph targets`, `texture
+    /// "bark.webp" (WebP)`.
     pub(super) left_out: Vec<String>,
 }
 
@@ -33,7 +34,8 @@ pub(super) struct Part {
     pub(super) normals: Vec<Vec3>,
     /// Linear RGB from 0 to 1, one a position, or none at all.
     pub(super) colours: Vec<Vec3>,
-    /// Places in the material's reflectance texture and in its emission texture, one a position each, or none at all.
+    /// Places in the material's reflectance texture and in its emission texture, one a position each, or none
+    /// at all.
     pub(super) coordinates: [Vec<Vec2>; 2],
     /// Indices into the positions, inside them.
     pub(super) triangles: Vec<[u32; 3]>,
@@ -91,14 +93,15 @@ pub(super) fn is_possible(position: &Vec3) -> bool {
     position.is_finite() && f64::from(position.abs().max_element()) <= MAX_COORDINATE
 }
 
-/// Says in one line what a mesh file holds and the picture will lack.
+/// Warns in one line of what a mesh file holds and the picture will lack.
 pub(super) fn tell(name: &str, left_out: &[String]) {
     if !left_out.is_empty() {
         tracing::warn!("{name}: left out: {}", left_out.join("; "));
     }
 }
 
-/// Adds a mesh to the geometry as one surface, without the triangles that have no area, whose number it gives.
+/// Adds a mesh to the geometry as one surface, without the triangles that have no area, whose number it
+/// gives.
 ///
 /// # Errors
 /// If no triangle is left, or a coordinate is too large after scaling.
@@ -185,7 +188,8 @@ fn checked(material: Material) -> Result<Material, Problem> {
         {
             Err((
                 format!(
-                    "the index {index} or transmittance {transmittance} of material \"{name}\" is not possible"
+                    "the index {index} or transmittance {transmittance} of material \
+                     \"{name}\" is not possible"
                 ),
                 "the index goes from 0.1 to 10, the transmittance from 0 to 1",
             ))

@@ -6,11 +6,13 @@ use glam::{DVec3, Vec3};
 
 use super::Part;
 
-/// A sum of normals that is shorter than this has no direction: the faces cancel each other, as those of a sheet with two sides do.
+/// A sum of normals that is shorter than this has no direction: the faces cancel each other, as those of a
+/// sheet with two sides do.
 const LEAST_SUM: f64 = 1e-6;
 
-/// The normals of each part's vertices: the file's, or else the means of all faces of the surface around the vertex's position,
-/// whatever their part, by the angle that each has there, so that it does not matter how a face is cut into triangles.
+/// The normals of each part's vertices: the file's, or else the means of all faces of the surface around the
+/// vertex's position, whatever their part, by the angle that each has there, so that it does not matter how a
+/// face is cut into triangles.
 ///
 /// `triangles` are those of each part that have an area.
 pub(super) fn normals(parts: &[Part], triangles: &[Vec<[u32; 3]>]) -> Vec<Vec<Vec3>> {

@@ -97,7 +97,7 @@ fn methods(watch: &Watch<'_>) {
     watch.unchanged("dropping pipelines");
 }
 
-/// The calls of a host that tells what changed.
+/// The calls of a host that declares what changed.
 fn frames(watch: &Watch<'_>) {
     let (map, expected) = (map(watch), expected());
     let mask = Mask::upload(&watch.gl, &Image::filled(SIZE, 1)).unwrap();
@@ -137,7 +137,7 @@ fn masks(watch: &Watch<'_>) {
     watch.unchanged("MaskMaker::from_stencil that fails");
 }
 
-/// Calls that are asked for what does not fit.
+/// Calls with arguments that do not fit.
 fn failing(watch: &Watch<'_>) {
     let gl = &watch.gl;
     let mut map = map(watch);

@@ -1,4 +1,4 @@
-//! A host: a context, the commands that glow lacks, and a framebuffer or a shader that fails when told to.
+//! A host: a context, the commands that glow lacks, and a framebuffer or a shader that fails on demand.
 
 use std::cell::Cell;
 use std::collections::BTreeMap;
@@ -17,12 +17,11 @@ macro_rules! commands {
             fn of(addresses: &BTreeMap<String, usize>) -> Self {
                 Self {
                     $($field: {
+                        type Command = unsafe extern "system" fn($($argument),*);
                         let address = std::ptr::with_exposed_provenance::<c_void>(addresses[$name]);
                         assert!(!address.is_null(), $name);
                         // SAFETY: this is the address of the command of that name, which has this type.
-                        unsafe {
-                            std::mem::transmute::<*const c_void, unsafe extern "system" fn($($argument),*)>(address)
-                        }
+                        unsafe { std::mem::transmute::<*const c_void, Command>(address) }
                     },)*
                 }
             }
@@ -60,7 +59,8 @@ impl Host {
         let (candidates, _) = context::candidates();
         let candidate = candidates.iter().find(|candidate| candidate.choice == *choice).unwrap();
         let mut addresses = BTreeMap::new();
-        // SAFETY: addresses are passed on as they are, but for that of a command which may answer that it failed.
+        // SAFETY: addresses are passed on as they are, but for that of a command which may answer that it
+        // failed.
         let gl = unsafe {
             candidate.open_through(|name, real| {
                 addresses.insert(name.to_str().unwrap().to_owned(), real.expose_provenance());
@@ -119,7 +119,8 @@ extern "system" fn get_shaderiv(shader: u32, parameter: u32, value: *mut i32) {
     }
 }
 
-/// Lets `call` fail at its first framebuffer or shader, then at its second, until there is none left; `after` sees each.
+/// Lets `call` fail at its first framebuffer or shader, then at its second, until there is none left; `after`
+/// sees each.
 pub(super) fn fail_at_each<T>(mut call: impl FnMut() -> varikernel::Result<T>, after: impl Fn(u32)) -> u32 {
     for failures in 0.. {
         FAIL_AT.set(Some(failures));

@@ -191,7 +191,7 @@ fn both_policies_live_side_by_side() {
     }
 }
 
-/// A stencil reference that the host set while it drew to no stencil, when drivers tell 0 for it.
+/// A stencil reference that the host set while it drew to no stencil, when drivers return 0 for it.
 #[test]
 fn a_stencil_reference_is_kept_that_cannot_be_asked_for() {
     for choice in choices() {

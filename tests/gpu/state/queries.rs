@@ -62,7 +62,7 @@ fn check(choice: &context::DeviceChoice, policy: StatePolicy) {
         });
     }
 
-    // Calls that need a query of their own say so, and do nothing.
+    // Calls that need a query of their own return an error, and do nothing.
     across(&host, glow::TIME_ELAPSED, || {
         let mut timer = varikernel::gl::Timer::new(&watch.gl).unwrap();
         let mut has_run = false;

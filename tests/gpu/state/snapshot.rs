@@ -231,7 +231,7 @@ impl Host {
             for &(name, state, count) in INTEGERS {
                 let mut values = vec![0; count];
                 glow.get_parameter_i32_slice(state, &mut values);
-                // No stencil has more than 8 bits; drivers tell of more as they like.
+                // No stencil has more than 8 bits; drivers may return anything in the others.
                 if name.starts_with("stencil") && name.ends_with("bits") {
                     values[0] &= 0xFF;
                 }
@@ -303,7 +303,8 @@ impl Host {
     pub(super) fn snapshot_of_objects(&self, objects: &Objects) -> Snapshot {
         let mut states = Snapshot::new();
         let (glow, commands) = (self.gl.glow(), &self.commands);
-        // SAFETY: the context is current; the objects are alive; every buffer has room for its state's values.
+        // SAFETY: the context is current; the objects are alive; every buffer has room for its state's
+        // values.
         unsafe {
             for attribute in 0..self.limit(glow::MAX_VERTEX_ATTRIBS) {
                 let mut values = [

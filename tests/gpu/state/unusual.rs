@@ -116,7 +116,8 @@ impl Host {
                 let texture = Some(objects.textures[0]);
                 glow.framebuffer_texture_2d(target, attachment, glow::TEXTURE_2D, texture, 0);
             }
-            // A driver tells the stencil reference where there is a stencil, which it sees when it is asked for the status.
+            // A driver returns the stencil reference where there is a stencil, which it detects when the
+            // status is checked.
             let (target, attachment) = (glow::DRAW_FRAMEBUFFER, glow::DEPTH_STENCIL_ATTACHMENT);
             let texture = Some(objects.textures[1]);
             glow.framebuffer_texture_2d(target, attachment, glow::TEXTURE_2D, texture, 0);

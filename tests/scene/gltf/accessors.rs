@@ -90,7 +90,8 @@ fn quantised_numbers_are_themselves_or_shares() {
         let mut made = Made::square();
         let view = made.view(&bytes);
         made.json["bufferViews"][view]["byteStride"] = json!(4);
-        made.json["accessors"][0] = json!({"bufferView": view, "componentType": 5120, "count": 4, "type": "VEC3", "normalized": normalized});
+        made.json["accessors"][0] = json!({"bufferView": view, "componentType": 5120, "count": 4,
+            "type": "VEC3", "normalized": normalized});
         made.json["nodes"][0]["scale"] = json!([scale, scale, scale]);
         made.json["extensionsRequired"] = json!(["KHR_mesh_quantization"]);
         let found = corners(&made.load().unwrap());

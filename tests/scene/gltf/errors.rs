@@ -1,4 +1,4 @@
-//! What can be wrong with a glTF file, told with its place.
+//! What can be wrong with a glTF file, reported with its place.
 
 use serde_json::json;
 
@@ -59,7 +59,8 @@ fn compressed_vertices_are_refused_only_where_there_are_no_others() {
     made.refuses(&["meshes[0].primitives[0]", "KHR_draco_mesh_compression"]);
 
     let mut made = Made::square();
-    made.json["bufferViews"][0]["extensions"] = json!({"EXT_meshopt_compression": {"buffer": 0, "byteLength": 1, "byteStride": 4, "count": 1, "mode": "ATTRIBUTES"}});
+    made.json["bufferViews"][0]["extensions"] = json!({"EXT_meshopt_compression":
+        {"buffer": 0, "byteLength": 1, "byteStride": 4, "count": 1, "mode": "ATTRIBUTES"}});
     assert!(made.load().is_ok());
     made.json["bufferViews"][0]["buffer"] = json!(1);
     let text = made.text().replace("\"buffers\":[", "\"buffers\":[{\"byteLength\":1},");
@@ -93,7 +94,7 @@ fn numbers_of_the_wrong_kind_are_told() {
     made.refuses(&[place, "indices: it holds numbers with a fraction"]);
     made.json["accessors"][1]["componentType"] = json!(U16);
     made.json["accessors"][0]["type"] = json!("VEC2");
-    made.refuses(&[place, "attributes.POSITION: it holds Vec2 and not 3 numbers an item"]);
+    made.refuses(&[place, "attributes.POSITION: it holds VEC2 and not 3 numbers an item"]);
     made.json["accessors"][0]["componentType"] = json!(5130);
     made.refuses(&[place, "attributes.POSITION: its type of numbers is not known"]);
 

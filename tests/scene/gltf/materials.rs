@@ -37,7 +37,8 @@ fn a_primitive_without_a_material_has_that_of_the_format() {
 fn transmission_is_thin_without_a_volume_and_solid_with_one() {
     let glass = |extensions: Value| {
         made_of(&json!({
-            "pbrMetallicRoughness": {"baseColorFactor": [1, 0.5, 0.25, 1], "metallicFactor": 0, "roughnessFactor": 0},
+            "pbrMetallicRoughness":
+                {"baseColorFactor": [1, 0.5, 0.25, 1], "metallicFactor": 0, "roughnessFactor": 0},
             "extensions": extensions,
         }))
         .scattering
@@ -58,7 +59,7 @@ fn transmission_is_thin_without_a_volume_and_solid_with_one() {
             "KHR_materials_volume": {"thicknessFactor": 0.1}})),
         Scattering::Dielectric { index: 1.33 }
     );
-    // An index of 0 is the format's word for one without end: nothing gets in.
+    // An index of 0 is infinite in the format: nothing is refracted.
     assert_eq!(
         glass(json!({"KHR_materials_transmission": transmission, "KHR_materials_ior": {"ior": 0}})),
         Scattering::Mirror(Vec3::ONE)

@@ -44,7 +44,8 @@ impl Made {
         Self { json, bytes: Vec::new() }
     }
 
-    /// A square from (-1, -1, 0) to (1, 1, 0) that looks along z: positions in accessor 0, indices in accessor 1.
+    /// A square from (-1, -1, 0) to (1, 1, 0) that looks along z: positions in accessor 0, indices in
+    /// accessor 1.
     fn square() -> Self {
         let mut made = Self::new();
         let corners = [-1.0, -1.0, 0.0, 1.0, -1.0, 0.0, 1.0, 1.0, 0.0, -1.0, 1.0, 0.0];

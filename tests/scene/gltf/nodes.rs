@@ -34,7 +34,8 @@ fn transforms_add_up_from_the_root_to_the_mesh() {
 fn a_node_of_scale_zero_hides_its_mesh_and_no_other() {
     let mut made = with_normals();
     made.json["scenes"][0]["nodes"] = json!([0, 1, 2]);
-    made.json["nodes"] = json!([{"mesh": 0}, {"mesh": 0, "scale": [0, 0, 0]}, {"mesh": 0, "scale": [1, 0, 0], "translation": [3, 0, 0]}]);
+    made.json["nodes"] = json!([{"mesh": 0}, {"mesh": 0, "scale": [0, 0, 0]},
+        {"mesh": 0, "scale": [1, 0, 0], "translation": [3, 0, 0]}]);
     assert_eq!(corners(&made.load().unwrap()), moved(|at| at));
     made.json["scenes"][0]["nodes"] = json!([1]);
     made.refuses(&["no triangle"]);
@@ -55,7 +56,8 @@ fn a_mesh_squeezed_flat_keeps_finite_normals() {
 #[test]
 fn normals_of_a_mirrored_and_stretched_mesh_stay_across_it() {
     let mut made = with_normals();
-    // Along (1, 0, 1), where the surface is not: the normals say so alone, and smooth surfaces take them from the file.
+    // Along (1, 0, 1), where the surface is not: the normals say so alone, and smooth surfaces take them from
+    // the file.
     let slanted = made.floats("VEC3", &[1.0, 0.0, 1.0].repeat(4));
     made.primitive()["attributes"]["NORMAL"] = json!(slanted);
     made.json["nodes"][0]["scale"] = json!([2, 1, -1]);
@@ -129,8 +131,9 @@ fn instances_stand_where_the_extension_says() {
     // None, and a quarter turn around z.
     let rotations = made.floats("VEC4", &[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, half, half]);
     let scales = made.floats("VEC3", &[1.0, 1.0, 1.0, 3.0, 1.0, 1.0]);
-    made.json["nodes"][0] = json!({"mesh": 0, "translation": [0, 0, 5], "extensions": {"EXT_mesh_gpu_instancing":
-        {"attributes": {"TRANSLATION": translations, "ROTATION": rotations, "SCALE": scales, "_ID": 77}}}});
+    made.json["nodes"][0] = json!({"mesh": 0, "translation": [0, 0, 5],
+        "extensions": {"EXT_mesh_gpu_instancing": {"attributes":
+             {"TRANSLATION": translations, "ROTATION": rotations, "SCALE": scales, "_ID": 77}}}});
     made.json["extensionsRequired"] = json!(["EXT_mesh_gpu_instancing"]);
     let found = corners(&made.load().unwrap());
     let first = moved(|at| at + Vec3::new(1.0, 0.0, 5.0));

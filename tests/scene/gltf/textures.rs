@@ -24,7 +24,8 @@ fn four_colours(format: ImageFormat, scale: u32) -> Vec<u8> {
     bytes.into_inner()
 }
 
-/// The square with coordinates from (0, 1) at its lower left corner to (1, 0), and a base colour texture beside it.
+/// The square with coordinates from (0, 1) at its lower left corner to (1, 0), and a base colour texture
+/// beside it.
 fn textured() -> Made {
     let mut made = Made::square();
     let coordinates = made.floats("VEC2", &[0.0, 1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0]);
@@ -135,7 +136,8 @@ fn a_texture_transform_moves_turns_and_scales() {
     let mut made = textured();
     // The format's example: the lower left quarter of the image, turned clockwise by a quarter.
     made.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["extensions"] = json!({
-        "KHR_texture_transform": {"offset": [0, 1], "rotation": std::f64::consts::FRAC_PI_2, "scale": [0.5, 0.5]}});
+        "KHR_texture_transform":
+            {"offset": [0, 1], "rotation": std::f64::consts::FRAC_PI_2, "scale": [0.5, 0.5]}});
     for vertex in vertices(&load(&made)) {
         let (u, v) = (0.5 + vertex.position.x / 2.0, 0.5 - vertex.position.y / 2.0);
         let expected = Vec2::new(0.5 * v, 1.0 - 0.5 * u);

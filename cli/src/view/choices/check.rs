@@ -1,4 +1,4 @@
-//! What saved settings may not say: a file can hold any number, and not each makes a picture.
+//! Checks of saved settings: a file can hold any number, and not every one gives a picture.
 
 use anyhow::{Result, bail};
 use varikernel::glam::Vec3;
@@ -40,7 +40,8 @@ impl CameraChoice {
         let degrees = self.vertical_fov_degrees;
         if !(0.001..180.0).contains(&degrees) {
             bail!(
-                "choices.camera.vertical_fov_degrees = {degrees} is not possible: give more than 0 and less than 180"
+                "choices.camera.vertical_fov_degrees = {degrees} is not possible: give more than 0 \
+                 and less than 180"
             );
         }
         Ok(())

@@ -1,4 +1,4 @@
-//! Everything that a person may choose in the window, as saved settings hold it, and as options of the other verbs.
+//! Everything that can be chosen in the window, as saved settings and as options of the other verbs.
 
 mod check;
 
@@ -33,7 +33,8 @@ pub(super) struct Choices {
     pub(super) method: Method,
     pub(super) order: Order,
     pub(super) edges: Edges,
-    /// Photons of a frame; where `adapt` holds, the window changes them so that a frame takes `frame_milliseconds`.
+    /// Photons of a frame; where `adapt` holds, the window changes them so that a frame takes
+    /// `frame_milliseconds`.
     pub(super) photons_per_frame: u32,
     pub(super) adapt: bool,
     pub(super) frame_milliseconds: u32,
@@ -79,7 +80,7 @@ impl From<CameraChoice> for Camera {
     }
 }
 
-/// The file: what tells it from others, how to get the same without a window, and the choices.
+/// The file: its kind, how to get the same without a window, and the choices.
 #[derive(Serialize, Deserialize)]
 struct File {
     varikernel_view: u32,
@@ -117,7 +118,8 @@ impl Choices {
         if is_map {
             let (method, order, edges) = (word(self.method), word(self.order), word(self.edges));
             return format!(
-                "varikernel radius {source} -o radius.png -n {n} -r {max} --method {method} --search {order} --edges {edges}"
+                "varikernel radius {source} -o radius.png -n {n} -r {max} --method {method} --search \
+                 {order} --edges {edges}"
             );
         }
         let [width, height] = self.size;
@@ -128,8 +130,8 @@ impl Choices {
         };
         let exposure = self.exposure.map_or_else(String::new, |stops| format!(" --exposure {stops:.2}"));
         format!(
-            "varikernel render {source} -o picture.exr --size {width}x{height} --photons {} {radius} --kernel {} \
-             --bounces {} --seed {}{exposure}",
+            "varikernel render {source} -o picture.exr --size {width}x{height} --photons {} {radius} \
+             --kernel {} --bounces {} --seed {}{exposure}",
             photons.max(1),
             word(self.kernel),
             self.bounces,
@@ -160,7 +162,7 @@ impl Choices {
     }
 }
 
-/// The word of an option.
+/// The value of an option.
 pub(super) fn word(value: impl ValueEnum + Copy) -> String {
     value.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
 }
@@ -226,13 +228,14 @@ mod tests {
         let mut choices = choices();
         assert_eq!(
             choices.command(5000, false),
-            "varikernel render cornell-glass -o picture.exr --size 64x48 --photons 5000 -n 50 -r 16 --kernel cone --bounces 8 \
-             --seed 1"
+            "varikernel render cornell-glass -o picture.exr --size 64x48 --photons 5000 -n 50 -r 16 --kernel \
+             cone --bounces 8 --seed 1"
         );
         choices.source = "it's a map.exr".to_owned();
         assert_eq!(
             choices.command(0, true),
-            "varikernel radius 'it'\\''s a map.exr' -o radius.png -n 50 -r 16 --method sat --search bracketed --edges scale"
+            "varikernel radius 'it'\\''s a map.exr' -o radius.png -n 50 -r 16 --method sat --search \
+             bracketed --edges scale"
         );
         choices.set_method(Method::Pyramid);
         assert_eq!(choices.order, Order::Binary, "brackets are for the table");

@@ -52,7 +52,7 @@ impl MapEngine {
             searched: false,
             radii: None,
         };
-        // What would not be exact is refused before the old picture goes.
+        // What would not be exact is refused before the old picture is dropped.
         engine.step()?;
         engine.searched = false;
         Ok(engine)
@@ -143,7 +143,7 @@ impl MapEngine {
     }
 }
 
-/// An error of the library in the window's words.
+/// An error of the library, worded for the window.
 fn explain(error: Error) -> anyhow::Error {
     match error {
         Error::Setting { name, value, reason } => {

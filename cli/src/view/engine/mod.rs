@@ -85,7 +85,7 @@ impl Engine {
         matches!(self, Self::Map(_))
     }
 
-    /// For people: the scene's title, or the map's name.
+    /// The scene's title, or the map's name.
     pub(super) fn title(&self) -> &str {
         match self {
             Self::Scene(engine) => engine.title(),
@@ -155,7 +155,8 @@ impl Engine {
         }
     }
 
-    /// Writes the picture and its light (EXR), the picture as it is seen (PNG), or a map's radii (EXR, NPY, PNG).
+    /// Writes the picture and its light (EXR), the picture as it is seen (PNG), or a map's radii (EXR, NPY,
+    /// PNG).
     ///
     /// # Errors
     /// If the file can't be written, or the driver fails.

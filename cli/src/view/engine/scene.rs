@@ -57,8 +57,8 @@ impl SceneEngine {
     pub(super) fn maps(&self) -> Maps {
         let live = &self.live;
         let (size, irradiance) = (live.settings().size, live.settings().irradiance);
-        // A photon lands several times; a lit pixel has about as many landings as there are photons for each pixel, a caustic
-        // some dozens of times that.
+        // A photon lands several times; a lit pixel has about as many landings as there are photons for each
+        // pixel, a caustic some dozens of times that.
         let mean = live.photons() as f32 / (size.x * size.y) as f32;
         // What a first step has not yet filled is undefined.
         let drawn = live.steps() > 0;
@@ -120,7 +120,7 @@ impl SceneEngine {
     }
 }
 
-/// `settings` with everything that the window has a say in.
+/// `settings` with everything that is chosen in the window.
 fn settings(settings: &LiveSettings, choices: &Choices, camera: Camera) -> LiveSettings {
     LiveSettings {
         size: choices.size.into(),

@@ -1,4 +1,4 @@
-//! Everything that the window knows, and what becomes of it from frame to frame.
+//! The state of the window, and how it changes from frame to frame.
 
 mod opening;
 
@@ -32,7 +32,7 @@ pub(super) enum Beside {
     Snapshot,
 }
 
-/// What a person is told until the next thing happens.
+/// A message that stays until the next event.
 pub(super) struct Message {
     pub(super) text: String,
     pub(super) is_error: bool,
@@ -116,9 +116,9 @@ impl State {
         Ok(state)
     }
 
-    /// Takes a step if one is due. Errors are told, and nothing more is done until choices change.
+    /// Takes a step if one is due. Errors are shown, and nothing more is done until choices change.
     ///
-    /// Says whether a step was taken.
+    /// Returns whether a step was taken.
     pub(super) fn advance(&mut self) -> bool {
         self.take_choices();
         if self.paused || self.is_done() {
@@ -138,7 +138,7 @@ impl State {
         if !self.choices.adapt || self.engine.is_map() {
             return;
         }
-        // One slow frame, as of a first step or when mirrors are gathered, says nothing of photons.
+        // One slow frame, as of a first step or when mirrors are gathered, does not depend on the photons.
         self.recent.rotate_left(1);
         self.recent[RECENT - 1] = frame.as_secs_f64();
         let mut sorted = self.recent;
@@ -178,7 +178,7 @@ impl State {
         self.readout = None;
     }
 
-    /// Until a person chooses an exposure: what suits the picture, asked for less and less often.
+    /// Until an exposure is chosen: the one that suits the picture, found less and less often.
     fn fit_exposure(&mut self) -> Result<()> {
         if let Some(exposure) = self.choices.exposure {
             self.tone.exposure = exposure;

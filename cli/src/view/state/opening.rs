@@ -1,4 +1,5 @@
-//! What is opened in the window: scenes, maps, references and saved settings. On an error, all stays as it was.
+//! What is opened in the window: scenes, maps, references and saved settings. On an error, all stays as it
+//! was.
 
 use std::path::Path;
 
@@ -60,7 +61,8 @@ impl State {
         self.recent = [f64::from(self.choices.frame_milliseconds) / 1000.0; RECENT];
     }
 
-    /// Takes any file that the window knows: saved settings (.json), a map, a reference (a picture), else a scene.
+    /// Opens any file that the window supports: saved settings (.json), a map, a reference (a picture), else
+    /// a scene.
     pub(in crate::view) fn open_file(&mut self, path: &Path) {
         let name = path.to_string_lossy().into_owned();
         if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json")) {
@@ -71,7 +73,7 @@ impl State {
         } else if Format::of(path).is_err() || read_counts(path, &ReadOptions::default()).is_ok() {
             self.open_source(&name);
         } else if let Err(picture) = self.open_reference(path) {
-            // It is neither: what a map lacks is told, and for colours what a reference lacks.
+            // It is neither: the error is that of a map, and for colours that of a reference.
             match read_colours(path) {
                 Ok(_) => self.tell_error(&picture),
                 Err(_) => self.open_source(&name),
@@ -87,11 +89,15 @@ impl State {
         let reference = read_colours(path)?;
         let (size, wanted) = (reference.size(), self.engine.maps().size);
         if self.engine.is_map() {
-            bail!("{}: a picture; a reference is for scenes, and this is a map", path.display());
+            bail!(
+                "{}: a picture is a reference for scenes, and a map is open\nhelp: open a scene first",
+                path.display()
+            );
         }
         if size != wanted {
             bail!(
-                "{}: the reference has {} x {} pixels, and the picture {} x {}\nhelp: choose the size of the picture to fit",
+                "{}: the reference has {} x {} pixels, and the picture {} x {}\n\
+                 help: choose the size of the picture to fit",
                 path.display(),
                 size.x,
                 size.y,

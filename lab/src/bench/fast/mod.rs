@@ -1,5 +1,5 @@
-//! The suite of the fast path: what a table built by a scan, a bracketed search and all that is skipped cost, on maps that
-//! differ in where their photons are.
+//! The suite of the fast path: what a table built by a scan, a bracketed search and all that is skipped cost,
+//! on maps that differ in where their photons are.
 //!
 //! | map | photons a pixel |
 //! |---|---|
@@ -8,9 +8,10 @@
 //! | `caustic`, `step` | 10 on the average, as `varikernel synth` makes them |
 //! | `mostly-empty` | 1 in the lower left quarter, anywhere in it, and none elsewhere |
 //!
-//! On every map: the units; the three orders in one table at MR 32 and 256, the bracketed one also at 512 and with zero
-//! edges; frames of the thesis's four combinations, of the scan in each order, and of the planner's choice. On the caustic
-//! alone: the three builds, also in other sizes, and the [situations](super::Situation). n = 25, tables in u32.
+//! On every map: the units; the three orders in one table at MR 32 and 256, the bracketed one also at 512 and
+//! with zero edges; frames of the thesis's four combinations, of the scan in each order, and of the planner's
+//! choice. On the caustic alone: the three builds, also in other sizes, and the
+//! [situations](super::Situation). n = 25, tables in u32.
 //!
 //! The [targets](Target) are ratios of medians of the same run.
 
@@ -35,7 +36,7 @@ use varikernel::settings::{Edges, Method, Order, SatSamples, Settings};
 
 /// MR of every search and frame.
 const MAX_RADII: [u32; 2] = [32, 256];
-/// MR of bracketed searches, which are meant not to mind.
+/// MR of bracketed searches, whose time should not depend on it.
 const MORE_RADII: [u32; 3] = [32, 256, 512];
 /// MR of situations.
 const SITUATION_RADIUS: u32 = 32;
@@ -133,7 +134,7 @@ pub(super) fn pipelines(settings: &BenchSettings) -> Vec<Settings> {
     pipelines
 }
 
-/// The scanlines at the questions of the frames; the tree, which knows zero edges only, at one.
+/// The scanlines at the questions of the frames; the tree, which supports zero edges only, at one.
 fn rivals(settings: &BenchSettings, map: &MapInfo) -> Vec<(Case, Work)> {
     let asked = |rivals: Vec<Rival>, radii: &[u32], edges| {
         let (max_radius, edges) = (radii.to_vec(), vec![edges]);

@@ -1,7 +1,7 @@
 //! The targets of the suite, each a ratio of medians of the same map in the same run.
 //!
-//! A row that is missing or wrong leaves its targets without a measure, also where it would be one of several to find the
-//! best among: the best of the others might not be the best.
+//! A row that is missing or wrong leaves its targets without a measure, also where it would be one of several
+//! to find the best among: the best of the others might not be the best.
 
 use super::rows::Rows;
 use super::{CAUSTIC, FastSuite, MAX_RADII, MORE_RADII, MOSTLY_EMPTY, SITUATION_RADIUS, SPARSE};
@@ -12,7 +12,8 @@ use crate::bench::target::{Bound, Side, Target};
 use varikernel::measure::Unit;
 use varikernel::settings::{Edges, Order};
 
-/// Sides from which on a build is told in copies, as far as which it is compared with doubling, and at which both.
+/// Builds are given in copies from the first side on, and compared with doubling up to the second, which both
+/// include.
 const LARGE: u32 = 1024;
 const SMALL: u32 = 256;
 /// The mean radius above which a bracketed search should beat both others.
@@ -44,7 +45,7 @@ pub(super) fn of<'a>(suite: &FastSuite, report: &'a Report) -> Vec<Target> {
 
 type Row = (Case, Work);
 
-/// The rows of a map, to be held against each other.
+/// The rows of a map, to be compared with each other.
 #[derive(Clone, Copy)]
 struct Judge<'a> {
     report: &'a Report,

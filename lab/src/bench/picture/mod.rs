@@ -1,4 +1,5 @@
-//! The suite of a picture: what its stages cost, told in point-only passes ([`PointPass`](varikernel::measure::PointPass)).
+//! The suite of a picture: the times of its stages, in point-only passes
+//! ([`PointPass`](varikernel::measure::PointPass)).
 //!
 //! | row | what is timed |
 //! |---|---|
@@ -6,13 +7,14 @@
 //! | `points` | every photon as a point, nothing read: the unit |
 //! | `density` | the photons that contribute, counted, and their power added up |
 //! | `radius` | the radius map of those counts: a table and a search |
-//! | `splat-variable`, `splat-fixed` | every photon drawn as its kernel, by the radius map, and with the fixed radius that is best in the glass box |
+//! | `splat-variable` | every photon drawn as its kernel, by the radius map |
+//! | `splat-fixed` | the same with the fixed radius that is best in the glass box |
 //! | `gather` | every pixel gathering with its radius |
 //! | `photons` | photons traced on the CPU, with 8 diffuse landings at most |
 //!
-//! Rows take turns, one sample each, so that a machine that slows down slows all alike. Every answer is checked: counts and
-//! radii against the definition, the gather against it at 61 pixels, points by their number, the splat by its energy, and landings
-//! by their tally.
+//! Rows take turns, one sample each, so that a machine that slows down slows all alike. Every answer is
+//! checked: counts and radii against the definition, the gather against it at 61 pixels, points by their
+//! number, the splat by its energy, and landings by their tally.
 
 mod rows;
 
@@ -84,7 +86,7 @@ pub struct PictureReport {
     pub program: String,
     /// Where it ran.
     pub device: Device,
-    /// What was asked.
+    /// The settings.
     pub suite: PictureSuite,
     /// Photons that were drawn as points: those in the picture, as many as were traced at most.
     pub drawn: u64,
@@ -94,17 +96,17 @@ pub struct PictureReport {
     pub radii: [u32; 3],
     /// The stages.
     pub rows: Vec<PictureRow>,
-    /// What they were meant to reach.
+    /// The targets, judged.
     pub targets: Vec<Target>,
 }
 
 impl PictureSuite {
-    /// Times the stages until `budget` is spent, each at least once; after each round `observe` is told what was found so far,
-    /// and the done share.
+    /// Times the stages until `budget` is spent, each at least once; after each round `observe` gets what was
+    /// found so far, and the share of the work that is done.
     ///
     /// # Errors
-    /// Those of [`Renderer`](varikernel::render::Renderer) and `observe`, and [`Error::File`](varikernel::Error::File) for an unknown
-    /// scene.
+    /// Those of [`Renderer`](varikernel::render::Renderer) and `observe`, and
+    /// [`Error::File`](varikernel::Error::File) for an unknown scene.
     pub fn run(
         &self,
         gl: &Gl,

@@ -1,4 +1,4 @@
-//! What the rows run, and whether their answers are right.
+//! The work of each row, and whether its answer is right.
 
 use std::time::Instant;
 
@@ -17,7 +17,8 @@ use varikernel::settings::{Estimate, PictureSettings, RadiusChoice, Search, Sett
 
 /// The fixed radius with the least RMSE in the glass box (`varikernel figures`), in pixels.
 const BEST_FIXED: u32 = 2;
-/// By how much gathered light may differ from the definition's, as a share of it: a photon on a border counts in either pixel.
+/// By how much gathered light may differ from the definition's, as a share of it: a photon on a border counts
+/// in either pixel.
 const GATHERED: f64 = 2e-3;
 /// Pixels at which the definition, which is slow, gathers too.
 const SAMPLED: u32 = 61;
@@ -274,8 +275,8 @@ impl<'a> Rows<'a> {
     }
 }
 
-/// Whether as many photons are counted in each pixel as should be, but for those that f32 puts on the other side of a border, or
-/// of a surface's edge.
+/// Whether as many photons are counted in each pixel as should be, but for those that f32 puts on the other
+/// side of a border, or of a surface's edge.
 fn are_counts_right(counts: &Image<f32>, expected: &Image<u32>, drawn: f64) -> bool {
     let pairs = counts.values().iter().zip(expected.values());
     let apart: f64 = pairs.map(|(&count, &all)| (f64::from(count) - f64::from(all)).abs()).sum();

@@ -14,7 +14,8 @@ pub(super) struct Band {
     question: Question,
     rows: Range<u32>,
     table: Table,
-    /// Radii with zero edges of the row that was searched last; beyond the question's reach where that held too few.
+    /// Radii with zero edges of the row that was searched last; beyond the question's reach where that held
+    /// too few.
     zero_edges: Vec<u32>,
 }
 
@@ -76,8 +77,8 @@ fn next_radius(boxes: Boxes<'_>, question: Question, x: usize, before: u32) -> u
     (before - 1 + too_few(before - 1) + too_few(before)).clamp(1, question.reach + 1)
 }
 
-/// Searches those pixels of row `y` again whose box is cut by an edge before it holds enough; `radius` and `limited`
-/// are those of zero edges.
+/// Searches those pixels of row `y` again whose box is cut by an edge before it holds enough; `radius` and
+/// `limited` are those of zero edges.
 fn scale_edges(boxes: Boxes<'_>, question: Question, y: u32, radius: &mut [u32], limited: &mut [u8]) {
     let Question { size, search, reach } = question;
     let from_ends = y.min(size.y - 1 - y);
@@ -104,8 +105,8 @@ fn scale_edges(boxes: Boxes<'_>, question: Question, y: u32, radius: &mut [u32],
     }
 }
 
-/// The first radius in (`too_few`, `enough`] that holds enough; the second bound is known to. Tries `start` first and goes
-/// away from it in steps that double.
+/// The first radius in (`too_few`, `enough`] that holds enough; the second bound is known to. Tries `start`
+/// first and goes away from it in steps that double.
 fn first_from(start: u32, too_few: u32, enough: u32, holds_enough: impl Fn(u32) -> bool) -> u32 {
     let (mut too_few, mut enough) = (too_few, enough);
     let (mut probe, mut step) = (start, 1);

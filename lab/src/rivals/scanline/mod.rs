@@ -1,25 +1,28 @@
-//! An exact table, and a search that starts from the row before: the fastest exact way on a processor that we know.
+//! An exact table, and a search that starts from the row before: the fastest exact way on a processor that we
+//! know.
 //!
-//! With zero edges, radii of neighbours differ by at most one: |R(p) - R(q)| <= max(|dx|, |dy|), the map's edges and the
-//! cap at MR included. So the radius next to a radius r is r - 1, r or r + 1, and two counts tell which. The
-//! neighbour is the one in the row before, so that no pixel of a row waits for another one, and nothing branches: a
-//! core has the counts of many pixels in flight at once.
+//! With zero edges, radii of neighbours differ by at most one: |R(p) - R(q)| <= max(|dx|, |dy|), the map's
+//! edges and the cap at MR included. So the radius next to a radius r is r - 1, r or r + 1, and two counts
+//! decide which. The neighbour is the one in the row before, so that no pixel of a row waits for another one,
+//! and nothing branches: a core has the counts of many pixels in flight at once.
 //!
-//! With scaled edges neighbours may differ by any amount. But no scaled radius is larger than the one with zero edges, R, and
-//! both are equal where the distance a to the nearest edge of the map is R or more. Elsewhere the scaled radius is
-//! in (a, R]: these pixels alone are searched again, from the radius of the pixel before.
+//! With scaled edges neighbours may differ by any amount. But no scaled radius is larger than the one with
+//! zero edges, R, and both are equal where the distance a to the nearest edge of the map is R or more.
+//! Elsewhere the scaled radius is in (a, R]: these pixels alone are searched again, from the radius of the
+//! pixel before.
 //!
-//! Cost: one pass for the table and 8 reads a pixel, whatever the map, n and MR; with scaled edges at least 4 more for a
-//! pixel nearer to the edge than its radius. Memory: the table, with margins of MR. All of it is allocated once.
-//! On all cores, the map is cut into bands of rows, each with a table of its own that reaches MR rows into its
-//! neighbours', so that no core waits for another.
+//! Cost: one pass for the table and 8 reads a pixel, whatever the map, n and MR; with scaled edges at least 4
+//! more for a pixel nearer to the edge than its radius. Memory: the table, with margins of MR. All of it is
+//! allocated once. On all cores, the map is cut into bands of rows, each with a table of its own that reaches
+//! MR rows into its neighbours', so that no core waits for another.
 //!
 //! Limit of exactness: none. Sums are modulo 2^32 of counts clamped to n (facts 1 and 2 of
-//! [`exactness`](varikernel::maps::exactness)); where a box could hold 2^32 of them all the same, the definition's table of u64
-//! answers, slowly.
+//! [`exactness`](varikernel::maps::exactness)); where a box could hold 2^32 of them all the same, the
+//! definition's table of u64 answers, slowly.
 //!
-//! Tried and left out: the left neighbour in place of the one above takes twice the time; a second count only where the
-//! first asks for it takes half of it on empty maps, as much on a caustic and a fifth more on sparse ones.
+//! Tried and left out: the left neighbour in place of the one above takes twice the time; a second count only
+//! where the first asks for it takes half of it on empty maps, as much on a caustic and a fifth more on
+//! sparse ones.
 
 mod march;
 mod table;
@@ -32,7 +35,7 @@ use varikernel::image::Image;
 use varikernel::reference::{Radii, radius_by_table};
 use varikernel::settings::Search;
 
-/// Bands that each thread gets: one that is held up does not hold up all.
+/// Bands that each thread gets: several, so that a slow one does not delay all.
 const BANDS_A_THREAD: usize = 4;
 /// The least pixels of a band: a tenth of a millisecond's work, ten times what handing it out costs.
 const BAND_PIXELS: u32 = 1 << 14;
@@ -51,7 +54,8 @@ pub enum Cores {
 struct Question {
     size: UVec2,
     search: Search,
-    /// The largest radius that is tried with zero edges: MR, or what covers the map from any pixel if that is less.
+    /// The largest radius that is tried with zero edges: MR, or what covers the map from any pixel if that is
+    /// less.
     reach: u32,
 }
 
@@ -60,7 +64,7 @@ impl Question {
     fn fits_32_bits(&self, density: &Image<u32>) -> bool {
         let limit = 1 << 32;
         let min_photons = self.search.min_photons;
-        // One radius more than `reach` is counted, though never believed.
+        // One radius more than `reach` is counted, but never returned.
         let sides = self.size.min(UVec2::splat(2 * self.reach + 3));
         let area = u64::from(sides.x) * u64::from(sides.y);
         let clamped_total =
@@ -131,7 +135,8 @@ impl Scanline {
     }
 }
 
-/// Rows of a band: few, but no fewer than its table overlaps those of its neighbours, unless threads would go without.
+/// Rows of a band: few, but no fewer than its table overlaps those of its neighbours, unless threads would go
+/// without.
 fn band_rows(question: Question, threads: usize) -> u32 {
     let rows = question.size.y;
     let least = BAND_PIXELS.div_ceil(question.size.x).min(rows);
@@ -161,7 +166,7 @@ mod tests {
             [rows(1024, 1024, 32, 2), rows(1024, 1024, 100, 2), rows(1024, 1024, 1000, 2)],
             [128, 200, 512]
         );
-        // As many pixels as are worth while, and no more rows than there are.
+        // As many pixels as are worthwhile, and no more rows than there are.
         assert_eq!([rows(128, 200, 2, 8), rows(64, 64, 2, 8), rows(1, 1, 2, 8)], [128, 64, 1]);
     }
 
@@ -182,14 +187,18 @@ mod tests {
         #[test]
         fn bands_agree_with_the_definition(
             (width, height, band_rows) in (1..14_u32, 1..14_u32, 1..15_u32),
-            counts in proptest::collection::vec(prop_oneof![6 => Just(0_u32), 2 => 1..9_u32, 1 => Just(u32::MAX)], 196),
+            counts in proptest::collection::vec(
+                prop_oneof![6 => Just(0_u32), 2 => 1..9_u32, 1 => Just(u32::MAX)],
+                196,
+            ),
             (min_photons, max_radius, scale) in (1..60_u32, 1..20_u32, any::<bool>()),
         ) {
             let density = Image::from_fn(UVec2::new(width, height), |x, y| counts[(14 * y + x) as usize]);
             let edges = if scale { Edges::Scale } else { Edges::Zero };
             let question = question(density.size(), min_photons, max_radius, edges);
             let mut scanline = Scanline::in_bands(question, band_rows);
-            prop_assert_eq!(scanline.run(&density), &varikernel::reference::radius(&density, question.search));
+            let defined = varikernel::reference::radius(&density, question.search);
+            prop_assert_eq!(scanline.run(&density), &defined);
         }
     }
 }

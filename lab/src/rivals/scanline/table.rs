@@ -5,8 +5,8 @@ use std::ops::Range;
 use super::Question;
 use varikernel::image::Image;
 
-/// Sums modulo 2^32 of counts clamped to n, before each column and row, with margins on the left and right for boxes that
-/// reach past the map.
+/// Sums modulo 2^32 of counts clamped to n, before each column and row, with margins on the left and right
+/// for boxes that reach past the map.
 #[derive(Debug)]
 pub(super) struct Table {
     question: Question,
@@ -17,8 +17,8 @@ pub(super) struct Table {
     sums: Vec<u32>,
     /// Photons of each column in the rows that were summed so far.
     columns: Vec<u32>,
-    /// For each radius, where the entries at the left end of its box's first row and after its last one are, if the box
-    /// is around column 0.
+    /// For each radius, where the entries at the left end of its box's first row and after its last one are,
+    /// if the box is around column 0.
     ends: Vec<[usize; 2]>,
 }
 

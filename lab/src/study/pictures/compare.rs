@@ -7,8 +7,8 @@ use super::{Chosen, Metric, PictureRow, Width};
 use crate::RatioInterval;
 use varikernel::settings::{Kernel, PictureSettings};
 
-/// Who is better on these seeds: the interval of 95 % decides. The widths were chosen on the same seeds, so that it describes
-/// the rows and is too narrow for others.
+/// Who is better on these seeds: the interval of 95 % decides. The widths were chosen on the same seeds, so
+/// that it describes the rows and is too narrow for others.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Winner {
@@ -16,7 +16,7 @@ pub enum Winner {
     Variable,
     /// The fixed radius.
     Fixed,
-    /// The seeds don't tell.
+    /// The seeds do not decide.
     Undecided,
 }
 
@@ -60,12 +60,12 @@ pub struct EqualPhotons {
     pub fixed: Chosen,
     /// The n with the least mean error: chosen knowing the answer, as the fixed radius is.
     pub best: Comparison,
-    /// The program's default n, which knows nothing; if it was tried.
+    /// The program's default n, which is chosen without the answer; if it was tried.
     pub default: Option<Comparison>,
 }
 
-/// Compares, for each scene, number of photons and kernel among `rows`, and each metric. What lacks fixed or variable rows is
-/// left out.
+/// Compares, for each scene, number of photons and kernel among `rows`, and each metric. What lacks fixed or
+/// variable rows is left out.
 #[must_use]
 pub fn equal_photons(rows: &[PictureRow]) -> Vec<EqualPhotons> {
     let mut found = Vec::new();

@@ -8,7 +8,7 @@ use super::{Metric, PictureRow, Width, Winner};
 use crate::{Confidence, RatioInterval};
 use varikernel::settings::Kernel;
 
-/// Budgets that are looked at, evenly spaced in the logarithm, where both curves go.
+/// Budgets that are compared, evenly spaced in the logarithm, where both curves are defined.
 const BUDGETS: u32 = 5;
 
 /// One number of photons: how long a picture takes, and how wrong it is.
@@ -54,14 +54,14 @@ pub struct EqualTime {
     pub variable: Vec<CurvePoint>,
     /// The best fixed radius for each number of photons, by increasing time.
     pub fixed: Vec<CurvePoint>,
-    /// Times that both reach. Each width has a curve of its own over its numbers of photons, errors interpolated by their
-    /// logarithm over that of the time, and the lowest at that time counts: a narrow kernel with more photons may beat what is
-    /// best for either number. None where both share no time.
+    /// Times that both reach. Each width has a curve of its own over its numbers of photons, errors
+    /// interpolated by their logarithm over that of the time, and the lowest at that time counts: a narrow
+    /// kernel with more photons may beat what is best for either number. None where both share no time.
     pub budgets: Vec<Budget>,
 }
 
-/// Compares, for each scene and kernel among `rows`, and each metric. All widths have rows of the same seeds, as
-/// [`run`](super::run) gives them: seeds are paired in their order.
+/// Compares, for each scene and kernel among `rows`, and each metric. All widths have rows of the same seeds,
+/// as [`run`](super::run) gives them: seeds are paired in their order.
 #[must_use]
 pub fn equal_time(rows: &[PictureRow]) -> Vec<EqualTime> {
     let mut found = Vec::new();
@@ -160,7 +160,7 @@ struct AtTime {
     seeds: Vec<f64>,
 }
 
-/// The width with the least error at a time; nothing where no curve goes.
+/// The width with the least error at a time; nothing where no curve is defined.
 fn lowest_at(curves: &[Vec<CurvePoint>], seconds: f64) -> Option<AtTime> {
     let at = |curve: &Vec<CurvePoint>| {
         let count = curve.iter().map(|point| point.seeds.len()).min()?;
@@ -170,7 +170,8 @@ fn lowest_at(curves: &[Vec<CurvePoint>], seconds: f64) -> Option<AtTime> {
     curves.iter().filter_map(at).min_by(|a, b| a.error.total_cmp(&b.error))
 }
 
-/// A seed's error at a time between two points, on the straight line of the logarithms; nothing outside of the curve.
+/// A seed's error at a time between two points, on the straight line of the logarithms; nothing outside of
+/// the curve.
 fn error_at(curve: &[CurvePoint], seed: usize, seconds: f64) -> Option<f64> {
     let after = curve.iter().position(|point| point.seconds >= seconds)?;
     let end = &curve[after];

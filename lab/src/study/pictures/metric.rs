@@ -1,4 +1,4 @@
-//! The metrics of the study, and the settings that each of them likes best.
+//! The metrics of the study, and the settings that are best by each.
 
 use serde::{Deserialize, Serialize};
 
@@ -23,7 +23,7 @@ impl Metric {
     /// All of them.
     pub const ALL: [Self; 4] = [Self::Rmse, Self::RelativeMse, Self::Dissimilarity, Self::Flip];
 
-    /// Its name, for people.
+    /// Its name, to show.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {

@@ -1,13 +1,15 @@
-//! Errors of pictures: variable radii against the best fixed radius (thesis 2.5, 5.1), for the same photons and for the same
-//! time.
+//! Errors of pictures: variable radii against the best fixed radius (thesis 2.5, 5.1), for the same photons
+//! and for the same time.
 //!
-//! Each scene has a reference of many photons without kernels, of other seeds. Against it stand pictures of some numbers of
-//! photons, with some n and some fixed radii, of some seeds each; all pictures of a seed are drawn from the same photons. The
-//! fixed radius is chosen knowing the answer, for each scene, number of photons and metric anew, from a sweep that goes on until
-//! the best is not at its end. So the comparison is kind to the fixed radius: in practice nobody knows it.
+//! Each scene has a reference of many photons without kernels, of other seeds. Against it stand pictures of
+//! some numbers of photons, with some n and some fixed radii, of some seeds each; all pictures of a seed are
+//! drawn from the same photons. The fixed radius is chosen knowing the answer, for each scene, number of
+//! photons and metric anew, from a sweep that goes on until the best is not at its end. So the comparison
+//! favours the fixed radius: in practice the best one is unknown.
 //!
-//! RMSE and relative MSE are of indirect light, which is what photons bring. SSIM and FLIP are of the whole picture. The
-//! reference's own noise is in all errors, of variable and fixed radii alike, and draws their ratio towards 1.
+//! RMSE and relative MSE are of indirect light, which photons make. SSIM and FLIP are of the whole picture.
+//! The reference's own noise is in all errors, of variable and fixed radii alike, and draws their ratio
+//! towards 1.
 
 mod compare;
 mod equal_time;
@@ -37,13 +39,13 @@ pub struct PictureStudy {
     pub size: [u32; 2],
     /// Photons that leave the lights.
     pub photons: Vec<u32>,
-    /// n of variable radii that are tried at least; the sweep goes on, by twos, where the best is at its end. The default of
-    /// [`PictureSettings`] is compared on its own if it is among them.
+    /// n of variable radii that are tried at least; the sweep goes on, by twos, where the best is at its end.
+    /// The default of [`PictureSettings`] is compared on its own if it is among them.
     pub min_photons: Vec<u32>,
     /// MR of variable radii, in pixels.
     pub max_radius: u32,
-    /// Fixed radii in pixels, increasing: they are tried one after the other until each metric has its best and one more; the
-    /// sweep goes on where the best is at its end.
+    /// Fixed radii in pixels, increasing: they are tried one after the other until each metric has its best
+    /// and one more; the sweep goes on where the best is at its end.
     pub fixed: Vec<u32>,
     /// Falloffs; variable and fixed radii are compared for each.
     pub kernels: Vec<Kernel>,
@@ -106,7 +108,7 @@ impl PictureStudy {
             ("kernels", self.kernels.is_empty()),
         ] {
             if is_empty {
-                return refuse(name, "nothing".to_owned(), "the study compares some; give at least one");
+                return refuse(name, "nothing".to_owned(), "give at least one");
             }
         }
         for scene in &self.scenes {
@@ -114,17 +116,18 @@ impl PictureStudy {
         }
         for &radius in &self.fixed {
             if !(1..=MAX_PICTURE_RADIUS).contains(&radius) {
-                return refuse("fixed", radius.to_string(), "a kernel's radius goes from 1 to 96 pixels");
+                let reason = format!("a kernel's radius goes from 1 to {MAX_PICTURE_RADIUS} pixels");
+                return refuse("fixed", radius.to_string(), &reason);
             }
         }
         if self.photons.contains(&0) || self.reference_photons == 0 {
-            return refuse("photons", "0".to_owned(), "no photon means no light; ask for at least 1");
+            return refuse("photons", "0".to_owned(), "give at least 1");
         }
         if self.seeds == 0 {
-            return refuse("seeds", "0".to_owned(), "a picture takes at least one; 3 tell how sure it is");
+            return refuse("seeds", "0".to_owned(), "give at least 1; an interval takes 2 or more");
         }
         if self.reference_seeds == 0 || self.reference_seeds % 2 == 1 {
-            let reason = "two halves tell the reference's noise; give an even number";
+            let reason = "the reference's noise is found from two halves; give an even number";
             return refuse("reference_seeds", self.reference_seeds.to_string(), reason);
         }
         self.min_photons

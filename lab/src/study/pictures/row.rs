@@ -59,7 +59,8 @@ impl Width {
     }
 }
 
-/// A picture of one seed: its error is the same, bit for bit, whenever it is drawn again on the same renderer.
+/// A picture of one seed: its error is the same, bit for bit, whenever it is drawn again on the same
+/// renderer.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PictureRow {
     /// The scene's name.
@@ -78,11 +79,11 @@ pub struct PictureRow {
     pub mean_radius: f64,
     /// Share of pixels on diffuse surfaces whose search MR ended; 0 for a fixed radius.
     pub limited_share: f64,
-    /// Seconds of the clock until the photons are traced, uploaded and counted; direct light isn't in it. All pictures of a
-    /// seed share it.
+    /// Seconds of the clock until the photons are traced, uploaded and counted; direct light isn't in it. All
+    /// pictures of a seed share it.
     pub seconds_before: f64,
-    /// Seconds from there to the picture, shaders being there: table and search if the radii are variable, then kernels, mirrors
-    /// and glass, shading, and reading back.
+    /// Seconds from there to the picture, shaders being there: table and search if the radii are variable,
+    /// then kernels, mirrors and glass, shading, and reading back.
     pub seconds_drawing: f64,
 }
 

@@ -30,18 +30,20 @@ pub struct SceneReference {
     pub scene: String,
     /// Photons of all seeds.
     pub photons: u64,
-    /// Its own noise: RMSE and relative MSE of two halves against each other, brought to the mean of both (by 2 and by 4); SSIM
-    /// and FLIP of the halves as they are.
+    /// Its own noise: RMSE and relative MSE of two halves against each other, brought to the mean of both (by
+    /// 2 and by 4); SSIM and FLIP of the halves as they are.
     pub noise: PictureError,
 }
 
-/// Draws and compares everything. Rows of an earlier run of the same study that are given in `earlier` aren't drawn again;
-/// others among them are left out. `observe` gets the rows so far, after each seed, to be saved, and the progress.
+/// Draws and compares everything. Rows of an earlier run of the same study that are given in `earlier` aren't
+/// drawn again; others among them are left out. `observe` gets the rows so far, after each seed, to be saved,
+/// and the progress.
 ///
 /// Errors are the same bits on each run, whatever the number of threads; times are not.
 ///
 /// # Errors
-/// [`Error::Setting`](varikernel::Error::Setting) outside of a setting's range; those of [`Renderer`](varikernel::render::Renderer) and of `observe`.
+/// [`Error::Setting`](varikernel::Error::Setting) outside of a setting's range; those of
+/// [`Renderer`](varikernel::render::Renderer) and of `observe`.
 pub fn run(
     gl: &Gl,
     study: &PictureStudy,
@@ -120,7 +122,8 @@ impl<'s> Run<'s> {
         Ok((target, SceneReference { scene: name.to_owned(), photons, noise }))
     }
 
-    /// All pictures of one scene and number of photons: first the smallest widths, then larger ones while they get better.
+    /// All pictures of one scene and number of photons: first the smallest widths, then larger ones while
+    /// they get better.
     fn sweep(&mut self, place: &Place<'_>, observe: Observe<'_>) -> Result<()> {
         let first = self.rows.len();
         let work = DRAWN * f64::from(place.photons);
@@ -146,8 +149,8 @@ impl<'s> Run<'s> {
         Ok(())
     }
 
-    /// Widths to be tried next: the first ones of the study, then those beside the best so far, by any metric and kernel, until
-    /// a smaller and a larger one than each best was tried.
+    /// Widths to be tried next: the first ones of the study, then those beside the best so far, by any metric
+    /// and kernel, until a smaller and a larger one than each best was tried.
     fn next_widths(&self, first: usize) -> Vec<Width> {
         let study = self.study;
         let rows = &self.rows[first..];

@@ -157,7 +157,7 @@ impl Machine {
         }
     }
 
-    /// Whether the library vouches for the radii of a map.
+    /// Whether the library guarantees the radii of a map.
     fn promises(&self, density: &DensityMap, question: Question) -> bool {
         match &self.radii {
             Radii::Searched(pipeline) => {

@@ -19,7 +19,7 @@ const KINDS: [Kind; 4] = [Kind::Uniform, Kind::Caustic, Kind::Step, Kind::Spike]
 /// The seed of all maps.
 const SEED: u64 = 1;
 
-/// What is asked, on maps of which side.
+/// A question, on maps of which side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Question {
     /// Columns and rows.
@@ -143,11 +143,11 @@ pub struct RadiusRow {
     pub map: MapInfo,
     /// All its photons.
     pub photons: u64,
-    /// What was asked.
+    /// The question.
     pub question: Question,
     /// The way.
     pub variant: VariantName,
-    /// Whether the library vouches that every radius is exact.
+    /// Whether the library guarantees that every radius is exact.
     pub promised: bool,
     /// The mean of the exact radii, in pixels.
     pub mean_radius: f64,
@@ -168,7 +168,7 @@ pub struct RadiusRow {
 pub struct LeftOut {
     /// The map's name.
     pub map: String,
-    /// What was asked.
+    /// The question.
     pub question: Question,
     /// The way.
     pub variant: VariantName,
@@ -176,21 +176,21 @@ pub struct LeftOut {
     pub reason: String,
 }
 
-/// What a question gave.
+/// The results of a question.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Answers {
     /// A row for each way and map.
     pub rows: Vec<RadiusRow>,
-    /// What no row is there for.
+    /// What was not run.
     pub left_out: Vec<LeftOut>,
 }
 
-/// Runs every way on every map of a question that `earlier` does not have. `observe` gets what is there so far, the way that
-/// is next, and the part that is done.
+/// Runs every way on every map of a question that `earlier` does not have. `observe` gets what is there so
+/// far, the way that is next, and the part that is done.
 ///
 /// # Errors
-/// [`Error::Gl`] if the driver fails while it is timed, and whatever `observe` fails with. A way that can't be set up is left
-/// out, with the reason.
+/// [`Error::Gl`] if the driver fails while it is timed, and whatever `observe` fails with. A way that can't
+/// be set up is left out, with the reason.
 pub fn answer(
     gl: &Gl,
     question: Question,

@@ -77,7 +77,7 @@ impl Document<'_> {
             return Err(problem(place, "its type of numbers is not known", REMEDY));
         };
         if kind.multiplicity() != N || matches!(kind, Type::Mat2 | Type::Mat3) {
-            let reason = format!("it holds {kind:?} and not {N} numbers an item");
+            let reason = format!("it holds {} and not {N} numbers an item", type_name(kind));
             return Err(problem(place, reason, REMEDY));
         }
         let count = accessor.count.0;
@@ -114,6 +114,19 @@ impl Document<'_> {
             }
         }
         Ok(items)
+    }
+}
+
+/// The name of a type in the file.
+fn type_name(kind: Type) -> &'static str {
+    match kind {
+        Type::Scalar => "SCALAR",
+        Type::Vec2 => "VEC2",
+        Type::Vec3 => "VEC3",
+        Type::Vec4 => "VEC4",
+        Type::Mat2 => "MAT2",
+        Type::Mat3 => "MAT3",
+        Type::Mat4 => "MAT4",
     }
 }
 

@@ -1,4 +1,4 @@
-//! What a primitive says of its vertices, as it stands in the file.
+//! The attributes of a primitive's vertices, as they are in the file.
 
 use glam::{Vec2, Vec3};
 use gltf_json::mesh::{Primitive, Semantic};
@@ -95,7 +95,8 @@ impl Attributes<'_> {
         Ok(inside)
     }
 
-    /// Places in a texture, as KHR_texture_transform moves them; none where the primitive lacks the set that they count in.
+    /// Places in a texture, as KHR_texture_transform moves them; none where the primitive lacks the set that
+    /// they count in.
     pub(super) fn coordinates(&self, info: &Info, vertices: usize) -> Result<Option<Vec<Vec2>>, Problem> {
         let transform = info.extensions.as_ref().and_then(|extensions| extensions.texture_transform.as_ref());
         let set = transform.and_then(|transform| transform.tex_coord).unwrap_or(info.tex_coord);
@@ -111,7 +112,7 @@ impl Attributes<'_> {
             let (scale, offset) = (Vec2::from(transform.scale.0), Vec2::from(transform.offset.0));
             for one in &mut coordinates {
                 let Vec2 { x, y } = *one * scale;
-                // Counter-clockwise as one sees it, with the second coordinate downwards.
+                // Counter-clockwise as seen, with the second coordinate downwards.
                 *one = Vec2::new(cos * x + sin * y, cos * y - sin * x) + offset;
             }
         }

@@ -1,4 +1,4 @@
-//! Bytes of a glTF file: buffers, read when first asked for, and views of them.
+//! Bytes of a glTF file: buffers, read when first used, and views of them.
 
 use std::fmt::Display;
 
@@ -9,14 +9,14 @@ use super::document::Document;
 use super::extensions::{COMPRESSIONS, compressed};
 use super::{Problem, problem, uri};
 
-/// Bytes of numbers that a file may bring without buffers to hold them: by repetition, or as zeros that are told and not
-/// stored.
+/// Bytes of numbers that a file may bring without buffers to hold them: by repetition, or as zeros that are
+/// declared and not stored.
 pub(super) const ALLOWANCE: u64 = 1 << 28;
 /// Bytes of numbers that each byte of a buffer may become besides: a number of one byte becomes one of four.
 const GROWTH: u64 = 4;
 
 impl Document<'_> {
-    /// The bytes of a view, and the distance between items in it where it is told.
+    /// The bytes of a view, and the distance between items in it where it is given.
     ///
     /// # Errors
     /// If the view reaches past its buffer, or the buffer can't be read.
@@ -74,7 +74,7 @@ impl Document<'_> {
         Ok(cell.get_or_init(|| bytes))
     }
 
-    /// Takes memory into account before it is asked for.
+    /// Accounts for memory before it is allocated.
     ///
     /// # Errors
     /// If the file makes more of itself than its size allows.

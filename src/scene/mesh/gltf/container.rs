@@ -11,7 +11,7 @@ const REMEDY: &str = "copy or export the file again";
 /// The JSON of a file, and the bytes that a GLB brings with it.
 ///
 /// # Errors
-/// If a GLB is cut short, or its chunks are not what they say.
+/// If a GLB is cut short, or its chunks are malformed.
 pub(super) fn split(content: &[u8]) -> Result<(&[u8], Option<&[u8]>), Problem> {
     if !content.starts_with(b"glTF") {
         return Ok((content.strip_prefix(b"\xef\xbb\xbf").unwrap_or(content), None));
@@ -23,7 +23,7 @@ pub(super) fn split(content: &[u8]) -> Result<(&[u8], Option<&[u8]>), Problem> {
         let reason = format!("it is version {version} of the format, and only 2 is supported");
         return Err(problem("GLB", reason, "export the mesh again as glTF 2.0"));
     }
-    // Bytes after the length that the header tells mean nothing.
+    // Bytes after the length in the header are ignored.
     let content = content.get(..length).ok_or_else(|| cut("the file", length, content.len()))?;
     let json = Chunk::first(content.get(HEADER..).unwrap_or_default())?;
     if json.kind != b"JSON" {

@@ -1,4 +1,4 @@
-//! The JSON of a glTF file, with what this program has no use for taken out before it can be in the way.
+//! The JSON of a glTF file, without what this program does not use.
 
 use std::cell::{Cell, OnceCell};
 use std::collections::BTreeMap;
@@ -24,13 +24,13 @@ pub(super) struct Document<'a> {
     pub(super) folder: String,
     /// The bytes that a GLB brings.
     pub(super) blob: Option<&'a [u8]>,
-    /// Of each buffer, once it was asked for.
+    /// Of each buffer, once it was used.
     pub(super) contents: Vec<OnceCell<Vec<u8>>>,
     /// Bytes that may still be made of the file.
     pub(super) allowance: Cell<u64>,
 }
 
-/// What is told of the JSON before it is taken apart.
+/// What is recorded of the JSON before it is parsed.
 #[derive(Default)]
 struct Census {
     cameras: usize,
@@ -40,7 +40,7 @@ struct Census {
 }
 
 impl<'a> Document<'a> {
-    /// Takes a file named `name` apart.
+    /// Parses a file named `name`.
     ///
     /// # Errors
     /// If it is no glTF 2.0, or needs an extension that is not supported.
@@ -112,7 +112,7 @@ fn parse(json: &[u8]) -> Result<(Root, Census), Problem> {
 }
 
 impl Census {
-    /// Counts extensions, and takes out what applications keep for themselves.
+    /// Counts extensions, and removes data of applications (`extras`).
     ///
     /// The depth is bounded by that of the JSON, which its reader limits.
     fn visit(&mut self, value: &mut Value) {

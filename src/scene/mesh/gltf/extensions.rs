@@ -1,4 +1,5 @@
-//! Extensions of the format: which are read, which may be passed over with a word, and which a mesh can't be read without.
+//! Extensions of the format: which are read, which are left out with a warning, and which a mesh can't be
+//! read without.
 
 use std::collections::BTreeMap;
 
@@ -9,7 +10,7 @@ use super::document::Document;
 use super::left_out::{Kind, LeftOut};
 use super::{Problem, problem};
 
-/// Read, or heard of where what they stand for is met.
+/// Read, or reported where an object that uses them is read.
 const READ: &[&str] = &[
     "EXT_mesh_gpu_instancing",
     "EXT_texture_avif",

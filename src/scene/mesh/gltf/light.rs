@@ -23,7 +23,7 @@ const SOFT_EDGE: Kind = (
 );
 const WITHOUT_DIRECTION: Kind = ("spot without a direction", "spots without a direction");
 
-/// Cosines that are closer than this make an edge that nobody sees.
+/// Cosines that are closer than this make an edge too narrow to see.
 const SHARP: f64 = 1e-3;
 
 /// The light at a node, if it has one that shines.
@@ -85,8 +85,8 @@ fn name(entry: &Entry, node: &Node, index: usize) -> String {
 
 /// Of the evenly lit cone that stands for a spot, in radians.
 ///
-/// The format's spot fades from its inner cone to its outer one. Its recommended fading is the square of what is linear in
-/// the cosine, whose power is a third of that of an even light there.
+/// The format's spot fades from its inner cone to its outer one. Its recommended fading is the square of what
+/// is linear in the cosine, whose power is a third of that of an even light there.
 fn half_angle(spot: Option<&Spot>, place: &str, left_out: &mut LeftOut) -> Result<f32, Problem> {
     let missing = || problem(place, "the spot has no field spot", REMEDY);
     let Spot { inner_cone_angle: inner, outer_cone_angle: outer } = *spot.ok_or_else(missing)?;

@@ -38,10 +38,10 @@ const TINT: Kind = ("colour of solid glass", "colours of solid glass");
 const BACK: Kind =
     ("light from the back of a double-sided surface", "lights from the backs of double-sided surfaces");
 
-/// What the format says of primitives without a material.
+/// The format's default for primitives without a material.
 const DEFAULT_NAME: &str = "default material";
 
-/// The materials of primitives, each made when first asked for.
+/// The materials of primitives, each made when first used.
 pub(super) struct Materials<'a> {
     document: &'a Document<'a>,
     textures: Textures<'a>,
@@ -92,7 +92,7 @@ impl<'a> Materials<'a> {
         let material = match index {
             Some(index) => {
                 let entry = self.document.find(index, "material", "meshes: material")?;
-                // What a material lacks is told once, though it may be made with and without coordinates.
+                // What a material lacks is reported once, though it may be made with and without coordinates.
                 if !self.known.keys().any(|(known, _)| *known == number) {
                     tell(entry, left_out);
                 }
@@ -168,7 +168,7 @@ fn scattering(entry: &Entry) -> Scattering {
     let index = own.map_or(1.5, |own| own.ior.0);
     if transmission(entry) >= 0.5 {
         return match index {
-            // The format's word for an index without end, at which everything is reflected.
+            // In the format this is an infinite index, at which everything is reflected.
             0.0 => Scattering::Mirror(Vec3::ONE),
             _ if volume(entry).is_some() => Scattering::Dielectric { index },
             _ => Scattering::ThinDielectric { index, transmittance: colour },

@@ -1,7 +1,7 @@
-//! glTF 2.0, as .gltf with .bin files or as .glb, its JSON taken apart by `gltf-json`.
+//! glTF 2.0, as .gltf with .bin files or as .glb, its JSON parsed by `gltf-json`.
 //!
-//! Nothing in a file is trusted: each index and each range is checked where it is used, and memory is taken only for what the
-//! buffers can fill. What the picture will lack is collected, and told in one line.
+//! Nothing in a file is trusted: each index and each range is checked where it is used, and memory is taken
+//! only for what the buffers can fill. What the picture will lack is collected, and reported in one warning.
 
 mod accessor;
 mod attributes;
@@ -32,8 +32,8 @@ use material::Materials;
 use node::Nodes;
 use primitive::{Placing, Shop};
 
-/// Reads a glTF file named `name`, whose buffers and images are inside it, in data URIs or beside it. Where no materials are
-/// needed, nothing of them is read: no images, no colours of vertices.
+/// Reads a glTF file named `name`, whose buffers and images are inside it, in data URIs or beside it. Where
+/// no materials are needed, nothing of them is read: no images, no colours of vertices.
 ///
 /// # Errors
 /// The place in the file, what is wrong there, and what to do about it.

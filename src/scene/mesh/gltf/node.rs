@@ -17,7 +17,8 @@ pub(super) struct Nodes {
 }
 
 impl Nodes {
-    /// Places all nodes, and lists those of the scene to be shown: the file's default, else its first, else everything.
+    /// Places all nodes, and lists those of the scene to be shown: the file's default, else its first, else
+    /// everything.
     ///
     /// # Errors
     /// If the nodes are no trees, or a transform holds numbers that are not finite.
@@ -96,7 +97,7 @@ fn drawn(document: &Document<'_>, roots: Vec<usize>) -> Result<Vec<usize>, Probl
     Ok(drawn)
 }
 
-/// What KHR_node_visibility says, of the node and all below it.
+/// KHR_node_visibility, for the node and all below it.
 fn is_visible(node: &Node) -> bool {
     let others = node.extensions.as_ref().map(|extensions| &extensions.others);
     let visible =
@@ -134,8 +135,8 @@ pub(super) fn unit(quaternion: [f64; 4]) -> Option<DQuat> {
     (length.is_finite() && length > 0.0).then(|| quaternion * (1.0 / length))
 }
 
-/// The matrix by which normals turn, whatever the transform does to lengths: that of the cofactors, with the sign of the
-/// mirrored side.
+/// The matrix by which normals turn, whatever the transform does to lengths: that of the cofactors, with the
+/// sign of the mirrored side.
 pub(super) fn normal_matrix(to_world: DMat3) -> DMat3 {
     let DMat3 { x_axis: x, y_axis: y, z_axis: z } = to_world;
     let cofactors = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y));

@@ -31,10 +31,10 @@ pub(super) enum Placing<'a> {
     Skin(&'a [DAffine3]),
 }
 
-/// What primitives are read with, and where what they bring goes.
+/// The context of reading primitives, and where their data goes.
 pub(super) struct Shop<'a> {
     pub(super) document: &'a Document<'a>,
-    /// None where nobody needs them.
+    /// None where they are not needed.
     pub(super) materials: Option<Materials<'a>>,
     pub(super) left_out: LeftOut,
 }

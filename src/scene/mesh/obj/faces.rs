@@ -73,7 +73,8 @@ impl Faces {
         let first = self.corners.len();
         for word in line.words() {
             let corner = Corner::read(word, counts).map_err(|problem| {
-                let remedy = "give corners as VERTEX, VERTEX/TEXTURE, VERTEX//NORMAL or VERTEX/TEXTURE/NORMAL, counted from 1";
+                let remedy = "give corners as VERTEX, VERTEX/TEXTURE, VERTEX//NORMAL or \
+                              VERTEX/TEXTURE/NORMAL, counted from 1";
                 (format!("{}: {problem}", line.place()), remedy)
             })?;
             self.corners.push(corner);
@@ -94,8 +95,8 @@ impl Faces {
         (uses, self.list.iter().find(|face| face.material.is_none()).map(|face| face.line))
     }
 
-    /// The faces as parts, in the order of the file: one for all faces in a row that are alike. `material` gives the index of a
-    /// use's material.
+    /// The faces as parts, in the order of the file: one for all faces in a row that are alike. `material`
+    /// gives the index of a use's material.
     ///
     /// # Errors
     /// If a face names a vertex that is not in the file, or can't be cut.

@@ -1,5 +1,6 @@
-//! The logical lines of an OBJ or MTL file, as the many programs that write such files lay them out: any line end, tabs,
-//! indentation, lines that go on after a `\`, comments anywhere, a byte order mark, and names in UTF-8 or Latin-1.
+//! The logical lines of an OBJ or MTL file, as the many programs that write such files lay them out: any line
+//! end, tabs, indentation, lines that go on after a `\`, comments anywhere, a byte order mark, and names in
+//! UTF-8 or Latin-1.
 
 use std::borrow::Cow;
 
@@ -15,7 +16,8 @@ pub(super) struct Line<'a> {
     text: Cow<'a, [u8]>,
 }
 
-/// A name at the end of a line. A `#` may be part of it (`Material #25`) or begin a comment: nobody can tell from the line alone.
+/// A name at the end of a line. A `#` may be part of it (`Material #25`) or begin a comment: the line alone
+/// does not decide.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(super) struct Name {
     /// All to the line's end.
@@ -32,7 +34,7 @@ pub(super) fn lines(content: &[u8]) -> impl Iterator<Item = Line<'_>> {
 
 struct Rest<'a> {
     content: &'a [u8],
-    /// Lines that are behind us.
+    /// Lines that were read.
     number: usize,
 }
 
@@ -54,7 +56,8 @@ impl<'a> Rest<'a> {
         let mut last = self.next()?;
         let number = self.number;
         let mut text = Cow::Borrowed(last);
-        // A comment that ends with a backslash, such as a Windows path, doesn't swallow the next line.
+        // A comment that ends with a backslash, such as a Windows path, doesn't make the next line part of
+        // it.
         while before_comment(last).len() == last.len()
             && let Some((b'\\', _)) = last.trim_ascii_end().split_last()
         {
@@ -69,7 +72,7 @@ impl<'a> Rest<'a> {
 }
 
 impl Line<'_> {
-    /// The line's first word, which says what it is about.
+    /// The line's first word, its keyword.
     pub(super) fn keyword(&self) -> &[u8] {
         words(before_comment(&self.text)).next().unwrap_or_default()
     }

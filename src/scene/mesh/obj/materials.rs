@@ -1,4 +1,5 @@
-//! From the names that an OBJ file uses to materials: the MTL files that it names, and where each material is found.
+//! From the names that an OBJ file uses to materials: the MTL files that it names, and where each material is
+//! found.
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 
@@ -9,7 +10,7 @@ use crate::scene::Material;
 use crate::scene::mesh::Problem;
 use crate::scene::source::{self, Files};
 
-/// Names of MTL files that are tried; more are no mesh but an attack on the disk.
+/// The most names of MTL files that are tried: a limit for hostile files.
 const MAX_LIBRARIES: usize = 1000;
 /// Names of materials that an error lists.
 const MAX_LISTED: usize = 8;

@@ -1,7 +1,8 @@
-//! OBJ with its MTL files (<https://paulbourke.net/dataformats/obj/>): statement by statement to parts of faces that have one
-//! material each.
+//! OBJ with its MTL files (<https://paulbourke.net/dataformats/obj/>): statement by statement to parts of
+//! faces that have one material each.
 //!
-//! It is read here because the known crates refuse much of what exporters write, panic at some of it, and tell no lines.
+//! It is read here because the known crates refuse much of what exporters write, panic at some of it, and
+//! report no line numbers.
 
 mod faces;
 mod lines;
@@ -20,11 +21,11 @@ use self::materials::{Found, Libraries, Use};
 use super::{Mesh, Problem};
 use crate::scene::source::{self, Files};
 
-/// Things left out that are told; the others are counted.
+/// Things left out that are listed; the others are counted.
 const MAX_TOLD: usize = 12;
 
-/// Reads an OBJ file named `name`, whose MTL files count from its folder. If no materials are needed, as the surface has one,
-/// all faces come without.
+/// Reads an OBJ file named `name`, whose MTL files count from its folder. If no materials are needed, as the
+/// surface has one, all faces come without.
 pub(super) fn read(
     content: &[u8],
     files: &Files,
@@ -70,7 +71,7 @@ pub(super) fn read(
     Ok(mesh)
 }
 
-/// What the statements so far have told.
+/// The state after the statements so far.
 #[derive(Default)]
 struct Statements {
     faces: Faces,
@@ -81,7 +82,7 @@ struct Statements {
     current: Option<u32>,
     /// What is left out, and where it is first met.
     notes: Vec<(&'static str, usize)>,
-    /// The first statement that no format knows.
+    /// The first unknown statement.
     unknown: Option<String>,
 }
 
@@ -114,8 +115,8 @@ impl Statements {
         Ok(())
     }
 
-    /// A position, with or without a weight or a colour. The weight is for rational curves, not for faces; colours have no
-    /// standard.
+    /// A position, with or without a weight or a colour. The weight is for rational curves, not for faces;
+    /// colours have no standard.
     fn position(&mut self, line: &Line<'_>) -> Result<(), Problem> {
         let position = triple(line)?;
         self.faces.positions.push(position);
@@ -131,7 +132,7 @@ impl Statements {
         Ok(())
     }
 
-    /// A place in textures: theirs goes up, a scene's goes down.
+    /// Texture coordinates: the second one goes up in OBJ, and down in a scene.
     fn coordinate(&mut self, line: &Line<'_>) {
         let place = match line.numbers() {
             Ok(([u, v], count)) if count > 0 => Vec2::new(u, 1.0 - v),
@@ -143,8 +144,8 @@ impl Statements {
         self.faces.coordinates.push(place);
     }
 
-    /// The material for the faces that come. Once there is one it can't be turned off, so that `usemtl` without a name changes
-    /// nothing then.
+    /// The material for the faces that come. Once there is one it can't be turned off, so that `usemtl`
+    /// without a name changes nothing then.
     fn select(&mut self, line: &Line<'_>) {
         let name = line.name();
         if name.bare.is_empty() && self.current.is_some() {
@@ -225,8 +226,8 @@ mod tests {
             left_out("a.obj", &text, true),
             [
                 "a second material \"red\" of a.mtl (line 3)",
-                "material \"bark\" of a.mtl: transparency (d), texture \"bark.png\" (map_Kd): there is no such file in the \
-                 program, no Kd, 0.8 is taken",
+                "material \"bark\" of a.mtl: transparency (d), texture \"bark.png\" (map_Kd): there is no \
+                 such file in the program, no Kd, 0.8 is taken",
                 "material \"bad\" of a.mtl, which no face has, line 8, `illum x`: `x` is not a finite number",
                 "materials of none.mtl (line 1): there is no such file in the program",
             ]

@@ -1,8 +1,8 @@
-//! MTL: what a file says about its materials, and what of it a scene can show.
+//! MTL: the materials of a file, as far as a scene can show them.
 //!
 //! Illumination models 4, 6, 7 and 9 are glass, 3, 5 and 8 mirrors, and others diffuse
-//! (<https://paulbourke.net/dataformats/mtl/>). Lines that are not needed for that are not looked at, so that faults in them do
-//! no harm.
+//! (<https://paulbourke.net/dataformats/mtl/>). Lines that are not needed for that are not checked, so that
+//! faults in them do no harm.
 
 use glam::Vec3;
 
@@ -104,7 +104,8 @@ impl Entry<'_> {
         self.last(field).map(image)
     }
 
-    /// The field that makes the material transparent: `d` is opacity, `Tr` its opposite; programs that mix them up write both.
+    /// The field that makes the material transparent: `d` is opacity, `Tr` its opposite; programs that mix
+    /// them up write both.
     fn transparency(&self) -> Option<&'static str> {
         let number = |field: &str| {
             let word = self.last(field)?.words().find(|word| *word != "-halo")?;
@@ -170,7 +171,7 @@ fn colour_of(line: &Line<'_>) -> Option<Vec3> {
     }
 }
 
-/// What a statement says of an image.
+/// The image that a statement names.
 pub(super) struct ImageName {
     /// Its file; the name may have blanks.
     pub(super) name: String,
@@ -203,7 +204,8 @@ fn image(line: &Line<'_>) -> ImageName {
         }
         match option {
             "-clamp" => found.clamped = value == "on",
-            // How it is filtered, which channel a grey one has, and colour correction that is off: nothing to tell.
+            // How it is filtered, which channel a grey one has, and colour correction that is off: nothing to
+            // report.
             "-blendu" | "-blendv" | "-boost" | "-texres" | "-imfchan" | "-cc" => {}
             _ => found.options.push(option.to_owned()),
         }

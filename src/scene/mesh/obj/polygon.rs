@@ -1,10 +1,11 @@
-//! Faces of many corners, cut into triangles: as a fan where the face is convex, else by ear clipping in its plane.
+//! Faces of many corners, cut into triangles: as a fan where the face is convex, else by ear clipping in its
+//! plane.
 
 use earcut::Earcut;
 use glam::{DVec2, DVec3, Vec3};
 
-/// Most corners of a face that is not convex: where edges cross, cutting takes the square of their number and more, a second for
-/// this many.
+/// Most corners of a face that is not convex: where edges cross, cutting takes the square of their number and
+/// more, a second for this many.
 const MAX_CORNERS: usize = 1 << 11;
 
 /// The sine of an angle by which a corner may be dented and the face still be taken as convex: rounding.
@@ -23,8 +24,8 @@ pub(super) struct Cutter {
 impl Cutter {
     /// The triangles of a face as indices of its corners, which run as the face's do.
     ///
-    /// Convex faces are cut into the fan 0, 1, 2 and 0, 2, 3 and so on. Faces that cross themselves have no right answer, but
-    /// get one.
+    /// Convex faces are cut into the fan 0, 1, 2 and 0, 2, 3 and so on. Faces that cross themselves have no
+    /// right answer, but get one.
     ///
     /// # Errors
     /// What is wrong, if the face is not convex and has more than [`MAX_CORNERS`] corners.
@@ -52,8 +53,8 @@ impl Cutter {
         Ok(())
     }
 
-    /// Lays the corners into the face's plane, counter-clockwise as seen from its front; its normal is Newell's, the sum of what
-    /// the edges turn. Says whether there is one.
+    /// Lays the corners into the face's plane, counter-clockwise as seen from its front; its normal is
+    /// Newell's, the sum of what the edges turn. Says whether there is one.
     fn place(&mut self, corners: &[Vec3]) -> bool {
         let origin = corners.first().copied().unwrap_or_default().as_dvec3();
         let corners = corners.iter().map(|corner| corner.as_dvec3() - origin);
@@ -72,7 +73,8 @@ impl Cutter {
     }
 }
 
-/// Whether every corner turns to the left, once around in all. Corners on a straight edge, or on each other, don't matter.
+/// Whether every corner turns to the left, once around in all. Corners on a straight edge, or on each other,
+/// don't matter.
 fn is_convex(places: &[DVec2]) -> bool {
     let following = places.iter().cycle().skip(1);
     let edges = places.iter().zip(following).map(|(place, next)| next - place);
