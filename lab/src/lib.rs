@@ -18,6 +18,7 @@ pub mod bench;
 mod chart;
 mod confidence;
 mod fingerprint;
+mod halves;
 mod picture;
 pub mod report;
 pub mod reproduce;
@@ -30,6 +31,7 @@ pub mod synth;
 pub mod thesis;
 
 pub use confidence::{CONFIDENCE_LEVEL, Confidence, RatioInterval};
+pub use halves::ReferenceHalves;
 pub use picture::{LightError, PictureError};
 pub use statistics::Statistics;
 pub use summary::{RadiusSummary, total_photons};

@@ -12,11 +12,11 @@ use varikernel::image::{
     Picture, Tile, check_writable, contact_sheet, picture_of, write_atomically, write_colours,
 };
 use varikernel::photon::TraceSettings;
-use varikernel::render::{Layers, Progress, Reference, Renderer};
+use varikernel::render::{Layers, Progress, Renderer};
 use varikernel::scene::Scene;
 use varikernel::settings::{MAX_PICTURE_RADIUS, PictureSettings, RadiusChoice};
 use varikernel::{Gl, Image};
-use varikernel_lab::{LightError, PictureError};
+use varikernel_lab::{LightError, PictureError, ReferenceHalves};
 
 use self::regions::{RegionErrors, Regions};
 use super::numbers::whole_checked_later;
@@ -118,24 +118,18 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     let gl = device::open(&source.device)?;
 
     let bar = Bar::new();
-    let halves = references(args, &gl, &scene, &bar).map_err(in_words_of_options)?;
-    let beauty = mean(&halves[0].beauty, &halves[1].beauty);
+    let reference = references(args, &gl, &scene, &bar).map_err(in_words_of_options)?;
+    let beauty = reference.mean(|layers| &layers.beauty);
     // All pictures are as bright as suits the reference.
     let tone_map = source.tone_map(&beauty);
-    let indirect = mean(&halves[0].indirect, &halves[1].indirect);
-    let [first, second] = &halves;
-    let apart = PictureError::of_light_and_sight(
-        [&first.indirect, &second.indirect],
-        [&first.beauty, &second.beauty],
-    );
-    let reference_noise =
-        PictureError { rmse: apart.rmse / 2.0, relative_mse: apart.relative_mse / 4.0, ..apart };
+    let indirect = reference.mean(|layers| &layers.indirect);
+    let reference_noise = reference.noise();
 
     let renderer = Renderer::new(&gl, &scene, &settings, &trace, &mut |progress| bar.show(progress))
         .map_err(in_words_of_options)?;
-    let regions = Regions::new(&halves[0].albedo, &mean(&halves[0].irradiance, &halves[1].irradiance));
+    let regions = Regions::new(&reference.halves[0].albedo, &reference.mean(|layers| &layers.irradiance));
     let region_pixels = regions.sizes();
-    let reference_noise_of_regions = regions.noise([&first.indirect, &second.indirect]);
+    let reference_noise_of_regions = regions.noise(reference.halves.each_ref().map(|half| &half.indirect));
     let mut studio = Studio { renderer, settings, indirect, beauty: beauty.clone(), regions };
     let fixed = studio.fixed_radii(&bar)?;
     let best = fixed
@@ -192,23 +186,15 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
 }
 
 /// Two halves of seeds that no picture uses.
-fn references(args: &Args, gl: &Gl, scene: &Scene, bar: &Bar) -> varikernel::Result<[Layers; 2]> {
+fn references(args: &Args, gl: &Gl, scene: &Scene, bar: &Bar) -> varikernel::Result<ReferenceHalves> {
     let (settings, trace) = (args.source.picture(), args.source.trace());
-    let mut done = 0;
-    let mut half = |first: u32| {
-        let mut reference = Reference::new(gl, scene, &settings, &mut |_| ())?;
-        for seed in (first..args.reference_seeds).step_by(2) {
-            let trace = TraceSettings { seed: trace.seed.wrapping_add(1 + u64::from(seed)), ..trace };
-            reference.add_seed(scene, &trace, &mut |_| ())?;
-            done += 1;
-            bar.show(Progress {
-                stage: "reference",
-                done: f64::from(done) / f64::from(args.reference_seeds),
-            });
-        }
-        reference.picture()
-    };
-    Ok([half(0)?, half(1)?])
+    let of_seed =
+        |number: u32| TraceSettings { seed: trace.seed.wrapping_add(1 + u64::from(number)), ..trace };
+    let seeds = args.reference_seeds;
+    ReferenceHalves::new(gl, scene, &settings, seeds, of_seed, &mut |done| {
+        bar.show(Progress { stage: "reference", done: f64::from(done) / f64::from(seeds) });
+        Ok(())
+    })
 }
 
 /// One set of photons, drawn with many radii.
@@ -274,13 +260,6 @@ fn caption(figure: &Figure, min_photons: u32) -> Vec<String> {
 
 fn errors(PictureError { rmse, relative_mse, .. }: PictureError) -> String {
     format!("RMSE {rmse:.5} relMSE {relative_mse:.4}")
-}
-
-/// The mean of two pictures.
-fn mean(a: &Image<[f32; 3]>, b: &Image<[f32; 3]>) -> Image<[f32; 3]> {
-    let pairs = a.values().iter().zip(b.values());
-    let values = pairs.map(|(a, b)| std::array::from_fn(|colour| a[colour].midpoint(b[colour])));
-    Image::from_values(a.size(), values.collect())
 }
 
 fn print(report: &Report, args: &Args) -> Result<()> {

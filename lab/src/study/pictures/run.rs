@@ -5,12 +5,11 @@ use serde::{Deserialize, Serialize};
 use super::metric::Sweep;
 use super::studio::{Compared, Place, Studio};
 use super::{Found, Metric, PictureRow, PictureStudy, Width};
-use crate::PictureError;
+use crate::{PictureError, ReferenceHalves};
 use varikernel::error::Result;
 use varikernel::gl::Gl;
-use varikernel::image::Image;
 use varikernel::photon::TraceSettings;
-use varikernel::render::{Layers, Progress, Reference};
+use varikernel::render::Progress;
 use varikernel::scene::Scene;
 use varikernel::settings::MAX_PICTURE_RADIUS;
 
@@ -95,30 +94,21 @@ impl<'s> Run<'s> {
     ) -> Result<(Compared, SceneReference)> {
         let study = self.study;
         let settings = study.settings(Width::Fixed { radius: 1 }, study.kernels[0]);
-        let mut halves = Vec::new();
-        for first in [0, 1] {
-            let mut half = Reference::new(self.gl, scene, &settings, &mut |_| ())?;
-            for number in (first..study.reference_seeds).step_by(2) {
-                let seed = REFERENCE_SEED + u64::from(number);
-                let photons = study.reference_photons;
-                half.add_seed(
-                    scene,
-                    &TraceSettings { photons, seed, ..TraceSettings::default() },
-                    &mut |_| (),
-                )?;
-                self.tell("reference", f64::from(photons), observe)?;
-            }
-            halves.push(half.picture()?);
-        }
-        let mean = |of: fn(&Layers) -> &Image<[f32; 3]>| mean(of(&halves[0]), of(&halves[1]));
-        let apart = PictureError::of_light_and_sight(
-            [&halves[0].indirect, &halves[1].indirect],
-            [&halves[0].beauty, &halves[1].beauty],
-        );
-        let noise = PictureError { rmse: apart.rmse / 2.0, relative_mse: apart.relative_mse / 4.0, ..apart };
+        let trace = |number: u32| TraceSettings {
+            photons: study.reference_photons,
+            seed: REFERENCE_SEED + u64::from(number),
+            ..TraceSettings::default()
+        };
+        let photons = f64::from(study.reference_photons);
+        let gl = self.gl;
+        let mut observe = |_| self.tell("reference", photons, &mut *observe);
+        let halves = ReferenceHalves::new(gl, scene, &settings, study.reference_seeds, trace, &mut observe)?;
+        let target = Compared {
+            indirect: halves.mean(|layers| &layers.indirect),
+            beauty: halves.mean(|layers| &layers.beauty),
+        };
+        let noise = halves.noise();
         let photons = u64::from(study.reference_seeds) * u64::from(study.reference_photons);
-        let target =
-            Compared { indirect: mean(|layers| &layers.indirect), beauty: mean(|layers| &layers.beauty) };
         Ok((target, SceneReference { scene: name.to_owned(), photons, noise }))
     }
 
@@ -228,11 +218,4 @@ impl<'s> Run<'s> {
         }
         Ok(())
     }
-}
-
-/// The mean of two pictures.
-fn mean(first: &Image<[f32; 3]>, second: &Image<[f32; 3]>) -> Image<[f32; 3]> {
-    let pairs = first.values().iter().zip(second.values());
-    let values = pairs.map(|(a, b)| std::array::from_fn(|colour| a[colour].midpoint(b[colour])));
-    Image::from_values(first.size(), values.collect())
 }
