@@ -36,8 +36,8 @@
 //!
 //! # The idea that keeps it small
 //! The thesis has one question, "how many photons lie in this box?", several answers to it, a search over radii and an
-//! edge rule. They stay apart: `glsl/radius.frag` holds the search and calls `count_in_box`, which each file of
-//! `glsl/count/` defines, and `glsl/common/enough.glsl` holds the edge rule. A program is one search and one counter.
+//! edge rule. They stay apart: `glsl/radius/search/stepwise.frag` holds the search and calls
+//! `count_in_box`, which the `count.glsl` of each table in `glsl/radius/tables/` defines, and `glsl/common/enough.glsl` holds the edge rule. A program is one search and one counter.
 //! [`ShaderSource::resolved`](gl::ShaderSource::resolved) gives each as plain text, for engines with code of their own.
 //!
 //! # Rooms

@@ -17,9 +17,9 @@ mod settings;
 mod status;
 mod version;
 
-use context::{Context, Home};
+use context::{Context, Home, destroy};
 use frame::{PlainFrame, texture};
-use handle::{Handle, destroy};
+use handle::Handle;
 use settings::PlainSettings;
 use status::{Failure, Status, answer};
 

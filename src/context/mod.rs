@@ -13,9 +13,9 @@ mod osmesa;
 pub mod window;
 
 mod choice;
-mod environment;
 #[cfg(all(feature = "egl", not(target_vendor = "apple")))]
-mod node;
+mod device_node;
+mod environment;
 mod refusal;
 mod tried;
 #[cfg(all(feature = "egl", not(target_vendor = "apple")))]

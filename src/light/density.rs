@@ -156,6 +156,6 @@ pub(crate) fn source() -> ShaderSource {
         .targets([TextureFormat::R32Float, TextureFormat::Rgba32Float])
         .vertex_file(glsl!("common/surfaces.glsl"))
         .vertex_file(glsl!("common/photon.glsl"))
-        .vertex_file(glsl!("density.vert"))
-        .file(glsl!("density.frag"))
+        .vertex_file(glsl!("light/density.vert"))
+        .file(glsl!("light/density.frag"))
 }

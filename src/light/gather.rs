@@ -68,5 +68,5 @@ pub(crate) fn source(kernel: Kernel, fixed: bool, correct: bool) -> ShaderSource
         .file(glsl!("common/surfaces.glsl"))
         .file(glsl!("common/kernel.glsl"))
         .file(glsl!("common/chosen_radius.glsl"))
-        .file(glsl!("gather.frag"))
+        .file(glsl!("light/gather.frag"))
 }

@@ -207,15 +207,17 @@ pub(crate) fn sources(kernel: Kernel, fixed: bool) -> [ShaderSource; 3] {
     [
         with_photon_kernel(source(COVERED, kernel, fixed))
             .targets([TextureFormat::R32Float])
-            .vertex_file(glsl!("splat/covered.vert"))
-            .file(glsl!("splat/covered.frag")),
+            .vertex_file(glsl!("light/splat/covered.vert"))
+            .file(glsl!("light/splat/covered.frag")),
         with_photon_kernel(source(SPREAD, kernel, fixed))
             .targets([TextureFormat::Rgba32Float])
-            .vertex_file(glsl!("splat/spread.vert"))
+            .vertex_file(glsl!("light/splat/spread.vert"))
             .file(glsl!("common/surfaces.glsl"))
             .file(glsl!("common/kernel.glsl"))
             .file(glsl!("common/photon_kernel.glsl"))
-            .file(glsl!("splat/spread.frag")),
-        ShaderSource::new(ADDITION).targets([TextureFormat::Rgba32Float]).file(glsl!("splat/addition.frag")),
+            .file(glsl!("light/splat/spread.frag")),
+        ShaderSource::new(ADDITION)
+            .targets([TextureFormat::Rgba32Float])
+            .file(glsl!("light/splat/addition.frag")),
     ]
 }

@@ -24,7 +24,7 @@ pub(crate) const NEAREST: f32 = 1e-12;
 /// Sides of a cube.
 pub(crate) const FACES: usize = 6;
 
-/// As `surfaces/triangles.vert` takes it.
+/// As `render/surfaces/triangles.vert` takes it.
 #[derive(Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
 struct Corner {
@@ -35,7 +35,7 @@ struct Corner {
     number: f32,
 }
 
-/// As `surfaces/spheres.vert` takes it.
+/// As `render/surfaces/spheres.vert` takes it.
 #[derive(Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
 struct CubeCorner {
@@ -191,15 +191,15 @@ pub(crate) fn sources() -> [ShaderSource; 2] {
     [
         ShaderSource::new(TRIANGLES)
             .targets([TextureFormat::R32Uint])
-            .vertex_file(glsl!("surfaces/triangles.vert"))
-            .file(glsl!("surfaces/ray.glsl"))
-            .file(glsl!("surfaces/plane.glsl"))
-            .file(glsl!("cube_map/triangles.frag")),
+            .vertex_file(glsl!("render/surfaces/triangles.vert"))
+            .file(glsl!("render/surfaces/ray.glsl"))
+            .file(glsl!("render/surfaces/plane.glsl"))
+            .file(glsl!("render/cube_map/triangles.frag")),
         ShaderSource::new(SPHERES)
             .targets([TextureFormat::R32Uint])
             .define("PRIMITIVES", 1_u32)
-            .vertex_file(glsl!("surfaces/spheres.vert"))
-            .file(glsl!("surfaces/ray.glsl"))
-            .file(glsl!("surfaces/spheres.frag")),
+            .vertex_file(glsl!("render/surfaces/spheres.vert"))
+            .file(glsl!("render/surfaces/ray.glsl"))
+            .file(glsl!("render/surfaces/spheres.frag")),
     ]
 }

@@ -108,5 +108,5 @@ impl ShadeStage {
 }
 
 pub(crate) fn source() -> ShaderSource {
-    ShaderSource::new(LABEL).targets([TextureFormat::Rgba32Float; 2]).file(glsl!("shade.frag"))
+    ShaderSource::new(LABEL).targets([TextureFormat::Rgba32Float; 2]).file(glsl!("render/shade.frag"))
 }

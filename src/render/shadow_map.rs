@@ -130,6 +130,6 @@ fn primitives(scene: &Scene) -> Image<[f32; 4]> {
 pub(crate) fn source() -> ShaderSource {
     ShaderSource::new(LABEL)
         .targets([TextureFormat::Rgba32Float])
-        .file(glsl!("shadow_map/between.glsl"))
-        .file(glsl!("shadow_map/light.frag"))
+        .file(glsl!("render/shadow_map/between.glsl"))
+        .file(glsl!("render/shadow_map/light.frag"))
 }

@@ -137,14 +137,14 @@ pub(crate) fn sources() -> [ShaderSource; 2] {
     [
         ShaderSource::new(TRIANGLES)
             .targets([TextureFormat::Rgba32Float; 3])
-            .vertex_file(glsl!("surfaces/triangles.vert"))
-            .file(glsl!("surfaces/ray.glsl"))
-            .file(glsl!("surfaces/plane.glsl"))
-            .file(glsl!("surfaces/triangles.frag")),
+            .vertex_file(glsl!("render/surfaces/triangles.vert"))
+            .file(glsl!("render/surfaces/ray.glsl"))
+            .file(glsl!("render/surfaces/plane.glsl"))
+            .file(glsl!("render/surfaces/triangles.frag")),
         ShaderSource::new(SPHERES)
             .targets([TextureFormat::Rgba32Float; 3])
-            .vertex_file(glsl!("surfaces/spheres.vert"))
-            .file(glsl!("surfaces/ray.glsl"))
-            .file(glsl!("surfaces/spheres.frag")),
+            .vertex_file(glsl!("render/surfaces/spheres.vert"))
+            .file(glsl!("render/surfaces/ray.glsl"))
+            .file(glsl!("render/surfaces/spheres.frag")),
     ]
 }

@@ -66,7 +66,7 @@ impl Traced {
             FirstBounce::Rays => trace_in_batches(scene, &emission, |photons, followed| {
                 keep(photons, &mut points)?;
                 show(followed);
-                Ok::<_, crate::Error>(())
+                Ok::<_, crate::error::Error>(())
             })?,
             FirstBounce::Maps => {
                 let mut maps = BounceMaps::new(gl, scene)?;

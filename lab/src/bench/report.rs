@@ -199,11 +199,6 @@ impl Report {
         runs
     }
 
-    /// Judges the suite's targets anew, if a suite was run.
-    pub fn update_targets(&mut self) {
-        self.targets = self.settings.suite.as_ref().map_or_else(Vec::new, |suite| suite.targets(self));
-    }
-
     /// Recomputes each run's time in copies.
     pub fn update_copies(&mut self) {
         let copies: Vec<Option<f64>> = self

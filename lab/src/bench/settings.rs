@@ -6,7 +6,7 @@ use std::time::Duration;
 use glam::UVec2;
 use serde::{Deserialize, Serialize};
 
-use super::fast::FastSuite;
+use super::suite::FastSuite;
 use crate::rivals::Rival;
 use varikernel::image::Image;
 use varikernel::settings::{Edges, Method, Order, SatBuild, SatSamples, Search, Settings, Storage};

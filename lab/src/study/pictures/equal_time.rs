@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::compare::distinct;
+use super::equal_photons::distinct;
 use super::metric::Sweep;
 use super::{Metric, PictureRow, Width, Winner};
 use crate::{Confidence, RatioInterval};
