@@ -41,7 +41,7 @@
 //! [`ShaderSource::resolved`](gl::ShaderSource::resolved) gives each as plain text, for engines with code of their own.
 //!
 //! # Rooms
-//! Data flows from top to bottom, and a module names only modules below it (checked by `tests/layers.rs`):
+//! Data flows from top to bottom, and a module names only modules below it (checked by `tests/layers`):
 //!
 //! | module | what it holds |
 //! |---|---|

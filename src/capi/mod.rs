@@ -5,7 +5,7 @@
 //! current context. A panic, our own mistake, ends at the boundary as [`Status::Internal`]. What can't be seen is for the
 //! host to keep: pointers are valid or null, handles are used between their creation and destruction.
 
-#![expect(unsafe_code, reason = "C hands over pointers; design rule 8 names this module")]
+#![expect(unsafe_code, reason = "C hands over pointers; rule 8 of CONTRIBUTING.md names this module")]
 #![expect(unreachable_pub, reason = "C is the caller, and cbindgen takes what says `pub`")]
 
 mod context;

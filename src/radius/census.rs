@@ -8,8 +8,8 @@ use crate::settings::Search;
 /// Pixels of the side of a census tile.
 pub const CENSUS_SIDE: u32 = 64;
 
-/// Photons in each tile of [`CENSUS_SIDE`]² pixels, tiles at the end cut to the map; more than 32 bits hold are taken as
-/// the most that they do.
+/// Photons in each tile of [`CENSUS_SIDE`]² pixels, tiles at the end cut to the map; more than 32 bits hold
+/// are taken as the most that they do.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Census {
     map_size: UVec2,

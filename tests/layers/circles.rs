@@ -1,9 +1,9 @@
 //! No circles inside a folder, in all three packages.
 //!
-//! The neighbours in a folder are its files and its sub-folders, each sub-folder as a whole. One names another where any
-//! path in it leads there, after what modules only hand on is followed to the file that defines it. The folder's own
-//! `mod.rs` (for the folder `src`, `lib.rs` or `main.rs`) is no neighbour: it stands for the folder, so that it may
-//! name what is inside and what is inside may name what it defines.
+//! The neighbours in a folder are its files and its sub-folders, each sub-folder as a whole. One names
+//! another where any path in it leads there, after what modules only hand on is followed to the file that
+//! defines it. The folder's own `mod.rs` (for the folder `src`, `lib.rs` or `main.rs`) is no neighbour: it
+//! stands for the folder, so that it may name what is inside and what is inside may name what it defines.
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -23,7 +23,8 @@ fn the_library_without_features_needs_only_small_crates() {
     assert_eq!(direct, BTreeSet::from(["bytemuck", "glam", "glow", "thiserror", "tracing"]));
 }
 
-/// Packages that need a newer Rust than the library promises, of a workspace as `cargo metadata` describes it.
+/// Packages that need a newer Rust than the library promises, of a workspace as `cargo metadata` describes
+/// it.
 fn newer(metadata: &Value) -> Vec<&str> {
     let version = |text: &str| {
         let mut parts = text.split('.').map(|part| part.parse::<u32>().unwrap());

@@ -3,7 +3,7 @@
 //! | file | rule |
 //! |---|---|
 //! | `arrows` | a room of the library names only rooms below it |
-//! | `circles` | inside a folder, no files and sub-folders name each other in a circle, in all three packages |
+//! | `circles` | inside a folder, no files and sub-folders name each other in a circle |
 //! | `stages` | a stage names no other stage |
 //! | `names` | one style of modules, and no two files of one name unless their rooms say which |
 //! | `lengths` | how long a file may be |
@@ -39,7 +39,8 @@ fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// All files below `folder` with one of the extensions, sorted; both paths begin at the root of the repository.
+/// All files below `folder` with one of the extensions, sorted; both paths begin at the root of the
+/// repository.
 fn files_below(folder: &str, extensions: &[&str]) -> Vec<PathBuf> {
     let mut files = Vec::new();
     for entry in fs::read_dir(root().join(folder)).unwrap() {

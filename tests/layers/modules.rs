@@ -49,7 +49,8 @@ impl Package {
         let paths: Vec<Place> = modules.keys().cloned().collect();
         for (path, module) in &mut modules {
             for Mention { mut place, known_as } in Reader::of(path, &module.tokens).mentions {
-                // A name without `crate`, `self` or `super` before it is a module's own, or another package's.
+                // A name without `crate`, `self` or `super` before it is a module's own, or another
+                // package's.
                 if place.is_from_here {
                     let child = [path.as_slice(), &place.segments[..1]].concat();
                     if !paths.contains(&child) {
@@ -154,8 +155,8 @@ impl<'a> Reader<'a> {
         reader
     }
 
-    /// Reads a path, or a tree of them in braces, and says where it ends. `imported` is for trees of `use`: whether
-    /// what they make known is known in the file's own module.
+    /// Reads a path, or a tree of them in braces, and says where it ends. `imported` is for trees of `use`:
+    /// whether what they make known is known in the file's own module.
     fn tree(&mut self, mut at: usize, before: &[String], imported: Option<bool>) -> usize {
         let mut path = before.to_vec();
         loop {

@@ -1,8 +1,9 @@
 //! One style of modules, and names that say which file is meant.
 //!
-//! A module with others inside is a folder with `mod.rs`. A name stands for one module of a package, unless it is in the
-//! table of what several rooms have a part in, each under its own folder's name. A name that means one thing here and
-//! another there does not belong in the table: it gets a longer name in one of the places.
+//! A module with others inside is a folder with `mod.rs`. A name stands for one module of a package, unless
+//! it is in the table of what several rooms have a part in, each under its own folder's name. A name that
+//! means one thing here and another there does not belong in the table: it gets a longer name in one of the
+//! places.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

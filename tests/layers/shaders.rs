@@ -1,7 +1,7 @@
 //! `glsl/` tells the same story as `src/`.
 //!
-//! Every shader outside of `glsl/common` is in a folder that has the path of a module of the library, and is named by a
-//! file of that module. Nothing else names shaders by file.
+//! Every shader outside of `glsl/common` is in a folder that has the path of a module of the library, and is
+//! named by a file of that module. Nothing else names shaders by file.
 
 use crate::modules::{Package, Place};
 use crate::tokens::Token;

@@ -3,7 +3,8 @@
 use crate::assert_none;
 use crate::modules::{Package, Place, words};
 
-/// The stages of a picture beside the radii: whole modules, or the maker alone where its map is in the same file.
+/// The stages of a picture beside the radii: whole modules, or the maker alone where its map is in the same
+/// file.
 const STAGES: [&str; 9] = [
     "maps::mask::MaskMaker",
     "maps::position::PositionMaker",
