@@ -3,7 +3,10 @@
 //! A context is made current on the thread that opens it and stays so until the last object made from its [`Gl`] is
 //! dropped; one context a thread at a time. It knows nothing of the stages.
 
-#![expect(unsafe_code, reason = "contexts are foreign handles; rule 8 of CONTRIBUTING.md confines them to this module")]
+#![expect(
+    unsafe_code,
+    reason = "contexts are foreign handles; rule 8 of CONTRIBUTING.md confines them to this module"
+)]
 
 #[cfg(all(feature = "egl", not(target_vendor = "apple")))]
 mod egl;

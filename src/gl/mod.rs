@@ -3,7 +3,10 @@
 //! Nothing here knows about photons. Every object deletes its GL name when dropped, and every object
 //! holds a [`Gl`], so a context that the library opened itself outlives all that was made in it.
 
-#![expect(unsafe_code, reason = "OpenGL is a C interface; rule 8 of CONTRIBUTING.md confines it to this module")]
+#![expect(
+    unsafe_code,
+    reason = "OpenGL is a C interface; rule 8 of CONTRIBUTING.md confines it to this module"
+)]
 
 mod device_info;
 mod errors;

@@ -72,6 +72,25 @@ fn faults(rooms: Rooms<'_>, package: &Package) -> Vec<String> {
     faults
 }
 
+/// What files of a package take from its root although it only hands that on.
+fn through_the_root(package: &Package) -> Vec<String> {
+    let root = &package.0[[].as_slice()].imports;
+    let mut faults = Vec::new();
+    for module in package.0.values() {
+        let names =
+            module.names.iter().filter(|place| place.first().is_some_and(|name| root.contains_key(name)));
+        faults.extend(names.map(|place| format!("{}: {} goes through lib.rs", module.file, words(place))));
+    }
+    faults
+}
+
+#[test]
+fn rooms_of_the_lab_and_the_program_are_named_themselves() {
+    for sources in ["lab/src", "cli/src"] {
+        assert_none(&through_the_root(&Package::of(sources)));
+    }
+}
+
 #[test]
 fn arrows_point_down() {
     assert_none(&faults(ROOMS, &Package::of("src")));
@@ -110,6 +129,13 @@ fn a_way_through_the_root_of_the_library_is_seen() {
     assert_eq!(with("gl/pass.rs", "use crate::Map;"), ["src/gl/pass.rs: Map goes through lib.rs"]);
     assert_eq!(with("gl/pass.rs", "use super::super::Map;"), ["src/gl/pass.rs: Map goes through lib.rs"]);
     assert_eq!(with("maps/mask.rs", "use crate::*;"), ["src/maps/mask.rs: * goes through lib.rs"]);
+
+    let lab = |text| {
+        let root = ("lib.rs", "mod a; pub use a::A; pub const COMMIT: &str = \"\";");
+        through_the_root(&Package::planted(&[root, ("a.rs", ""), ("b.rs", text)]))
+    };
+    assert_eq!(lab("use crate::a::A; use crate::COMMIT;"), [""; 0]);
+    assert_eq!(lab("use crate::A;"), ["src/b.rs: A goes through lib.rs"]);
 }
 
 #[test]

@@ -27,26 +27,26 @@ fn circles(package: &Package) -> Vec<String> {
     }
     let mut circles = Vec::new();
     for (folder, arrows) in &arrows {
-        let reached: BTreeMap<&str, BTreeSet<&str>> =
-            arrows.keys().map(|&from| (from, reached_from(arrows, from))).collect();
-        for (from, to) in arrows.iter().flat_map(|(from, to)| to.iter().map(move |arrow| (*from, arrow))) {
-            let (to, by) = to;
-            if reached.get(to.as_str()).is_some_and(|back| back.contains(from)) {
-                circles.push(format!("in `{}`: {from} -> {to} by {by}", words(folder)));
+        for (from, named) in arrows {
+            for (to, by) in named {
+                if reached_from(arrows, to).contains(from) {
+                    circles.push(format!("in `{}`: {from} -> {to} by {by}", words(folder)));
+                }
             }
         }
     }
     circles
 }
 
+/// What a neighbour names, and what that names, and so on.
 fn reached_from<'a>(
     arrows: &'a BTreeMap<&str, BTreeMap<String, String>>,
     from: &'a str,
 ) -> BTreeSet<&'a str> {
     let (mut reached, mut next) = (BTreeSet::new(), vec![from]);
     while let Some(at) = next.pop() {
-        for to in arrows.get(at).into_iter().flatten().map(|(to, _)| to.as_str()) {
-            if reached.insert(to) {
+        for to in arrows.get(at).into_iter().flat_map(BTreeMap::keys) {
+            if reached.insert(to.as_str()) {
                 next.push(to);
             }
         }

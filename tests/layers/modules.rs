@@ -16,7 +16,7 @@ pub(crate) struct Module {
     /// What the file names inside of its own package, as written, but from the root of the package.
     pub(crate) names: Vec<Place>,
     /// What `use` makes known in the module itself, by the name there.
-    imports: BTreeMap<String, Place>,
+    pub(crate) imports: BTreeMap<String, Place>,
 }
 
 /// All modules of a package, by their paths.

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use anyhow::Result;
 use varikernel::settings::Edges;
-use varikernel_lab::bench::{Case, Device, Report, Run, Stage, Verdict, compare};
+use varikernel_lab::bench::{Case, Device, Report, Run, Verdict, compare};
 
 use super::cells::{align_right, new_table, order, three_digits};
 use super::rivals;

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::case::{Case, Stage};
 use super::settings::{BenchSettings, MapInfo};
 use super::target::Target;
-use crate::Statistics;
+use crate::statistics::Statistics;
 use varikernel::error::{Error, Result};
 use varikernel::gl::{DeviceInfo, Sample};
 use varikernel::settings::Method;

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::equal_photons::distinct;
 use super::metric::Sweep;
 use super::{Metric, PictureRow, Width, Winner};
-use crate::{Confidence, RatioInterval};
+use crate::confidence::{Confidence, RatioInterval};
 use varikernel::settings::Kernel;
 
 /// Budgets that are looked at, evenly spaced in the logarithm, where both curves go.

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::metric::Sweep;
 use super::studio::{Compared, Place, Studio};
 use super::{Found, Metric, PictureRow, PictureStudy, Width};
-use crate::PictureError;
+use crate::picture::PictureError;
 use varikernel::error::Result;
 use varikernel::gl::Gl;
 use varikernel::image::Image;
