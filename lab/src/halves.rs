@@ -18,8 +18,8 @@ pub struct ReferenceHalves {
 }
 
 impl ReferenceHalves {
-    /// Traces `seeds` times, at least twice, with the settings that `trace` gives for each number from 0; `observe` gets
-    /// the number of seeds that are done.
+    /// Traces `seeds` times, at least twice, with the settings that `trace` gives for each number from 0;
+    /// `observe` gets the number of seeds that are done.
     ///
     /// # Errors
     /// Those of [`Reference`] and of `observe`.
@@ -56,8 +56,8 @@ impl ReferenceHalves {
         Image::from_values(first.size(), values.collect())
     }
 
-    /// The noise of the mean: RMSE and relative MSE of the halves against each other, divided by 2 and by 4; SSIM and FLIP of the
-    /// halves as they are.
+    /// The noise of the mean: RMSE and relative MSE of the halves against each other, divided by 2 and by 4;
+    /// SSIM and FLIP of the halves as they are.
     #[must_use]
     pub fn noise(&self) -> PictureError {
         let [first, second] = &self.halves;

@@ -4,8 +4,9 @@ use std::path::Path;
 
 use varikernel::image::{ReadOptions, read_counts};
 use varikernel_lab::report::{Report, figure_svg, table_csv};
-use varikernel_lab::thesis::claims::{self, Verdict};
+use varikernel_lab::thesis::claims;
 use varikernel_lab::thesis::evidence::{Evidence, Gain, OrderPoint};
+use varikernel_lab::thesis::judgement::Verdict;
 use varikernel_lab::thesis::quantity::{Measured, Measurements, Quantity, Timing};
 use varikernel_lab::thesis::{figures, tables};
 

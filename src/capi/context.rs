@@ -3,7 +3,7 @@
 use std::ffi::{CStr, c_char, c_void};
 use std::thread::{self, ThreadId};
 
-use super::{Failure, Status, answer, check_place, destroy, given, out_of_range};
+use super::{Failure, Status, answer, check_place, given, out_of_range};
 use crate::error::Error;
 use crate::gl::{Gl, StatePolicy};
 
@@ -63,6 +63,23 @@ impl Home {
         let text = "the handle belongs to the thread that made it, and this is another";
         Err(Failure::new(Status::WrongThread, text))
     }
+}
+
+/// Frees what a pointer of C owns, on its thread, with its context or after that has gone; null is fine.
+///
+/// # Safety
+/// `pointer` is null, or came from a box and was not destroyed.
+pub(super) unsafe fn destroy<T>(pointer: *mut T, home: impl FnOnce(&T) -> &Home) -> Status {
+    answer(|| {
+        // SAFETY: as the caller vouches.
+        let Some(value) = (unsafe { pointer.as_ref() }) else {
+            return Ok(());
+        };
+        home(value).check_drop()?;
+        // SAFETY: as the caller vouches.
+        drop(unsafe { Box::from_raw(pointer) });
+        Ok(())
+    })
 }
 
 fn check_current(get_string: GetString) -> Result<(), Failure> {

@@ -2,7 +2,7 @@
 
 use std::cell::Cell;
 
-use super::{Context, Failure, Home, Status, answer};
+use super::{Context, Failure, Home, Status};
 use crate::gl::Gl;
 
 /// Stages that belong to a context.
@@ -31,21 +31,4 @@ impl<T> Handle<T> {
         self.stages.set(Some(stages));
         outcome
     }
-}
-
-/// Frees what a pointer of C owns, on its thread, with its context or after that has gone; null is fine.
-///
-/// # Safety
-/// `pointer` is null, or came from a box and was not destroyed.
-pub(super) unsafe fn destroy<T>(pointer: *mut T, home: impl FnOnce(&T) -> &Home) -> Status {
-    answer(|| {
-        // SAFETY: as the caller vouches.
-        let Some(value) = (unsafe { pointer.as_ref() }) else {
-            return Ok(());
-        };
-        home(value).check_drop()?;
-        // SAFETY: as the caller vouches.
-        drop(unsafe { Box::from_raw(pointer) });
-        Ok(())
-    })
 }

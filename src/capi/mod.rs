@@ -5,7 +5,7 @@
 //! current context. A panic, our own mistake, ends at the boundary as [`Status::Internal`]. What can't be seen is for the
 //! host to keep: pointers are valid or null, handles are used between their creation and destruction.
 
-#![expect(unsafe_code, reason = "C hands over pointers; design rule 8 names this module")]
+#![expect(unsafe_code, reason = "C hands over pointers; rule 8 of CONTRIBUTING.md names this module")]
 #![expect(unreachable_pub, reason = "C is the caller, and cbindgen takes what says `pub`")]
 
 mod context;
@@ -17,9 +17,9 @@ mod settings;
 mod status;
 mod version;
 
-use context::{Context, Home};
+use context::{Context, Home, destroy};
 use frame::{PlainFrame, texture};
-use handle::{Handle, destroy};
+use handle::Handle;
 use settings::PlainSettings;
 use status::{Failure, Status, answer};
 

@@ -12,7 +12,7 @@ use glutin::display::GlDisplay as _;
 use glutin::prelude::*;
 
 use super::refusal::{INSTALL, Refusal};
-use super::{Opened, environment, node, vendor};
+use super::{Opened, device_node, environment, vendor};
 
 /// One EGL device.
 #[derive(Clone, Debug)]
@@ -75,7 +75,7 @@ pub(super) fn open(device: &Device) -> Result<Opened, Refusal> {
 fn cause(device: &Device) -> Option<Refusal> {
     // NVIDIA's own driver reads none of Mesa's variables, and may not need the node.
     let is_mesa = !device.description.contains("NVIDIA");
-    let of_node = || device.node.as_deref().and_then(node::refusal);
+    let of_node = || device.node.as_deref().and_then(device_node::refusal);
     let of_environment = || environment::obstacle(&environment::get).filter(|_| is_mesa);
     of_node().or_else(of_environment)
 }

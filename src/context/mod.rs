@@ -3,7 +3,10 @@
 //! A context is made current on the thread that opens it and stays so until the last object made from its
 //! [`Gl`] is dropped; one context a thread at a time. It does not depend on the stages.
 
-#![expect(unsafe_code, reason = "contexts are foreign handles; design rule 8 confines them to this module")]
+#![expect(
+    unsafe_code,
+    reason = "contexts are foreign handles; rule 8 of CONTRIBUTING.md confines them to this module"
+)]
 
 #[cfg(all(feature = "egl", not(target_vendor = "apple")))]
 mod egl;
@@ -13,9 +16,9 @@ mod osmesa;
 pub mod window;
 
 mod choice;
-mod environment;
 #[cfg(all(feature = "egl", not(target_vendor = "apple")))]
-mod node;
+mod device_node;
+mod environment;
 mod refusal;
 mod tried;
 #[cfg(all(feature = "egl", not(target_vendor = "apple")))]

@@ -3,12 +3,14 @@
 //! Nothing here depends on photons. Every object deletes its GL name when dropped, and every object holds a
 //! [`Gl`], so a context that the library opened itself outlives all that was made in it.
 
-#![expect(unsafe_code, reason = "OpenGL is a C interface; design rule 8 confines it to this module")]
+#![expect(
+    unsafe_code,
+    reason = "OpenGL is a C interface; rule 8 of CONTRIBUTING.md confines it to this module"
+)]
 
 mod device_info;
 mod errors;
 mod fragment_test;
-mod geometry;
 mod interface;
 mod label;
 mod pass;
@@ -16,32 +18,34 @@ mod preprocessor;
 mod program;
 mod query;
 mod readback;
+mod shader_source;
 mod shape;
-mod source;
 mod stage_times;
 mod state;
 #[doc = include_str!("state_contract.md")]
 pub mod state_contract {}
 mod texture;
+mod texture_format;
 mod timer;
+mod vertices;
 
 pub use device_info::DeviceInfo;
 pub(crate) use fragment_test::{FragmentTest, fill_where};
-pub(crate) use geometry::Vertices;
 pub use interface::{Interface, ShaderStage, Variable};
 pub(crate) use pass::{Pass, Target, Targets};
 pub(crate) use program::Program;
 pub(crate) use query::Query;
 pub(crate) use readback::Readback;
+pub use shader_source::ShaderSource;
+pub(crate) use shader_source::glsl;
 pub(crate) use shape::{TargetShape, TextureShape, bytes_of};
-pub use source::ShaderSource;
-pub(crate) use source::glsl;
 pub use stage_times::StageTimes;
 pub(crate) use state::StateGuard;
 pub use state::StatePolicy;
 pub(crate) use texture::Texture;
-pub use texture::TextureFormat;
+pub use texture_format::TextureFormat;
 pub use timer::{Sample, Timer, time};
+pub(crate) use vertices::Vertices;
 
 use std::any::Any;
 use std::cell::{Cell, RefCell};

@@ -8,7 +8,7 @@ use std::path::Path;
 use super::atomic::write_atomically;
 use super::attribute::Attribute;
 use super::counts::{Meaning, Problem, ReadOptions};
-use super::picture::{self, Picture};
+use super::map_picture::{self, Picture};
 use super::{Image, exr, npy, png};
 use crate::error::{Error, Result};
 
@@ -169,7 +169,7 @@ pub fn write_picture(path: &Path, image: &Image<u32>, picture: &Picture<'_>) -> 
             "use a file name that ends in .png",
         ));
     }
-    let drawn = picture::draw(image, picture);
+    let drawn = map_picture::draw(image, picture);
     write_atomically(path, |file| png::write_colours(file, &drawn))
 }
 

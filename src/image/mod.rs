@@ -20,9 +20,9 @@ mod files;
 #[cfg(feature = "scene")]
 mod layers;
 #[cfg(feature = "files")]
-mod npy;
+mod map_picture;
 #[cfg(feature = "files")]
-mod picture;
+mod npy;
 #[cfg(feature = "files")]
 mod png;
 #[cfg(feature = "scene")]
@@ -50,9 +50,9 @@ pub use files::{Format, read_counts, read_counts_of, read_mask, write_counts, wr
 #[cfg(feature = "scene")]
 pub use layers::{LayerFile, write_colours};
 #[cfg(feature = "files")]
-pub use picture::Picture;
+pub use map_picture::Picture;
 #[cfg(feature = "scene")]
-pub use picture::picture_of;
+pub use map_picture::picture_of;
 #[cfg(feature = "scene")]
 pub use sheet::{Tile, contact_sheet};
 #[cfg(feature = "files")]

@@ -3,7 +3,7 @@
 use glam::UVec2;
 
 use super::Image;
-use super::picture::draw_text;
+use super::map_picture::draw_text;
 
 const BACKGROUND: [u8; 3] = [250, 250, 250];
 const INK: [u8; 3] = [24, 24, 24];

@@ -1,13 +1,13 @@
 //! Photons to density map: one point for each photon, added up (thesis 2.1).
 //!
-//! - A photon counts if it contributes: it lies in the picture, on the surface that its pixel shows, on the side that is
-//!   seen, and before or behind that surface's plane by at most half a pixel.
+//! - A photon counts if it contributes: it lies in the picture, on the surface that its pixel shows, on the
+//!   side that is seen, and before or behind that surface's plane by at most half a pixel.
 //! - Cost: one draw of points; nothing is sorted. Memory: 20 bytes a pixel.
-//! - Exact: additive blending of ones into GL_R32F counts to 2^24 a pixel, where adding 1 stops to count; a map that gets
-//!   there is refused (`blended-counts` of `varikernel stress`). The order of the photons changes no count, and so no radius
-//!   (`order-of-photons`).
-//! - Beside the counts it adds up the photons' power, for estimates that gather, in f32: of N alike photons on a pixel the sum is
-//!   off by up to N 2^-25 of itself.
+//! - Exact: additive blending of ones into GL_R32F counts to 2^24 a pixel, where adding 1 stops to count; a
+//!   map that gets there is refused (`blended-counts` of `varikernel stress`). The order of the photons
+//!   changes no count, and so no radius (`order-of-photons`).
+//! - Beside the counts it adds up the photons' power, for estimates that gather, in f32: of N alike photons
+//!   on a pixel the sum is off by up to N 2^-25 of itself.
 
 use glam::{UVec2, Vec4};
 
@@ -40,10 +40,12 @@ pub struct DensityStage {
 }
 
 impl DensityStage {
-    /// Allocates and compiles for maps of `size`, still without photons: GL_R32F for counts, GL_RGBA32F for power.
+    /// Allocates and compiles for maps of `size`, still without photons: GL_R32F for counts, GL_RGBA32F for
+    /// power.
     ///
     /// # Errors
-    /// [`Error::TooLarge`]; [`Error::Shader`] if the driver refuses the shader; [`Error::Gl`] when memory runs out.
+    /// [`Error::TooLarge`]; [`Error::Shader`] if the driver refuses the shader; [`Error::Gl`] when memory
+    /// runs out.
     pub fn new(gl: &Gl, size: UVec2) -> Result<Self> {
         let _state = StateGuard::new(gl);
         let mut target = Target::of(gl, &Self::shape(size))?;
@@ -77,12 +79,12 @@ impl DensityStage {
 
     /// Counts photons in, beside those that are there.
     ///
-    /// The counts are read back, which waits for the GPU, only when 2^24 photons more were drawn than the fullest pixel
-    /// leaves room for.
+    /// The counts are read back, which waits for the GPU, only when 2^24 photons more were drawn than the
+    /// fullest pixel leaves room for.
     ///
     /// # Errors
-    /// [`Error::Mismatch`] if the surfaces have another size; [`Error::Inexact`] if a pixel holds 2^24 photons;
-    /// [`Error::Gl`] if the driver fails.
+    /// [`Error::Mismatch`] if the surfaces have another size; [`Error::Inexact`] if a pixel holds 2^24
+    /// photons; [`Error::Gl`] if the driver fails.
     pub fn add(&mut self, surfaces: &SurfaceMaps, photons: &PhotonPoints) -> Result<&DensityMap> {
         surfaces.check_size(self.map.size())?;
         let drawn = self.drawn() + photons.count();
@@ -152,6 +154,6 @@ pub(crate) fn source() -> ShaderSource {
         .targets([TextureFormat::R32Float, TextureFormat::Rgba32Float])
         .vertex_file(glsl!("common/surfaces.glsl"))
         .vertex_file(glsl!("common/photon.glsl"))
-        .vertex_file(glsl!("density.vert"))
-        .file(glsl!("density.frag"))
+        .vertex_file(glsl!("light/density.vert"))
+        .file(glsl!("light/density.frag"))
 }

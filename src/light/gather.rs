@@ -1,9 +1,10 @@
 //! The other way round: each pixel gathers with its own radius.
 //!
-//! - A pixel's irradiance is the weighted power of the pixels that its kernel covers, over their weighted areas: the count
-//!   that was found decides, not n.
+//! - A pixel's irradiance is the weighted power of the pixels that its kernel covers, over their weighted
+//!   areas: the count that was found decides, not n.
 //! - Cost: about 4 (2 R + 1)² / π times 3 fetches a pixel, whatever the number of photons.
-//! - Photons count as if they were in the middle of their pixels; energy is kept on the whole only, not for each photon.
+//! - Photons count as if they were in the middle of their pixels; energy is kept on the whole only, not for
+//!   each photon.
 
 use glam::UVec2;
 
@@ -25,12 +26,12 @@ pub struct GatherStage {
 }
 
 impl GatherStage {
-    /// Allocates and compiles for maps of `size`, and for the kernel, the correction and the kind of radii of `settings`:
-    /// from a map, or the same everywhere, whatever that radius is.
+    /// Allocates and compiles for maps of `size`, and for the kernel, the correction and the kind of radii of
+    /// `settings`: from a map, or the same everywhere, whatever that radius is.
     ///
     /// # Errors
-    /// [`Error::TooLarge`](crate::Error::TooLarge); [`Error::Shader`](crate::Error::Shader) if the driver refuses the shader;
-    /// [`Error::Gl`](crate::Error::Gl) when memory runs out.
+    /// [`Error::TooLarge`](crate::Error::TooLarge); [`Error::Shader`](crate::Error::Shader) if the driver
+    /// refuses the shader; [`Error::Gl`](crate::Error::Gl) when memory runs out.
     pub fn new(gl: &Gl, size: UVec2, settings: &IrradianceSettings) -> Result<Self> {
         let _state = StateGuard::new(gl);
         let program = Program::new(gl, &source(settings))?;
@@ -52,8 +53,8 @@ impl GatherStage {
     /// Gathers at every pixel from the power of each pixel's photons and their count.
     ///
     /// # Errors
-    /// [`Error::Mismatch`](crate::Error::Mismatch) if a map has another size, or the radius is fixed and the stage's is not, or
-    /// the other way round; [`Error::Gl`](crate::Error::Gl) if the driver fails.
+    /// [`Error::Mismatch`](crate::Error::Mismatch) if a map has another size, or the radius is fixed and the
+    /// stage's is not, or the other way round; [`Error::Gl`](crate::Error::Gl) if the driver fails.
     pub fn gather(
         &mut self,
         surfaces: &SurfaceMaps,
@@ -80,5 +81,5 @@ pub(super) fn source(settings: &IrradianceSettings) -> ShaderSource {
         .file(glsl!("common/surfaces.glsl"))
         .file(glsl!("common/kernel.glsl"))
         .file(glsl!("common/chosen_radius.glsl"))
-        .file(glsl!("gather.frag"))
+        .file(glsl!("light/gather.frag"))
 }

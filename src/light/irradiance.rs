@@ -1,11 +1,11 @@
-//! Photons and a g-buffer in, irradiance out: density, radii and kernels in order (thesis 2.6). Hosts, pictures, the window,
-//! the C interface and benchmarks all come through here.
+//! Photons and a g-buffer in, irradiance out: density, radii and kernels in order (thesis 2.6). Hosts,
+//! pictures, the window, the C interface and benchmarks all come through here.
 //!
-//! Photons may come all at once, or part after part, each with the power of all lights: the sum of k parts is then k times
-//! the light. Each part is drawn with the radii of all photons so far, so that these shrink as photons come, and the mean
-//! of the parts gets sharper. By arithmetic, on even ground: a kernel of part i holds n / i of its photons, so that the part's
-//! variance is i / n of its square, and that of the mean of k parts 1 / (2 n), whatever k; one splat of all photons has 1 / n, with
-//! kernels as narrow as the last.
+//! Photons may come all at once, or part after part, each with the power of all lights: the sum of k parts is
+//! then k times the light. Each part is drawn with the radii of all photons so far, so that these shrink as
+//! photons come, and the mean of the parts gets sharper. By arithmetic, on even ground: a kernel of part i
+//! holds n / i of its photons, so that the part's variance is i / n of its square, and that of the mean of k
+//! parts 1 / (2 n), whatever k; one splat of all photons has 1 / n, with kernels as narrow as the last.
 
 use glam::UVec2;
 
@@ -22,9 +22,10 @@ use crate::settings::{Estimate, IrradianceSettings, Kernel, RadiusChoice, Settin
 
 /// Photons and surfaces in, irradiance out, for one size.
 ///
-/// Everything is allocated and compiled by [`new`](Self::new), and by [`change`](Self::change) what other settings need; each
-/// call puts back the OpenGL state that it touches, also when it fails. [`render`](Self::render) and [`add`](Self::add) do all
-/// of it; [`count`](Self::count), [`search`](Self::search) and [`spread`](Self::spread) are its stages one by one.
+/// Everything is allocated and compiled by [`new`](Self::new), and by [`change`](Self::change) what other
+/// settings need; each call puts back the OpenGL state that it touches, also when it fails.
+/// [`render`](Self::render) and [`add`](Self::add) do all of it; [`count`](Self::count),
+/// [`search`](Self::search) and [`spread`](Self::spread) are its stages one by one.
 #[derive(Debug)]
 pub struct IrradiancePipeline {
     gl: Gl,
@@ -41,9 +42,9 @@ impl IrradiancePipeline {
     /// Allocates and compiles for surfaces of `size`.
     ///
     /// # Errors
-    /// [`Error::Setting`](crate::Error::Setting) outside of a setting's range, [`Error::TooLarge`](crate::Error::TooLarge),
-    /// [`Error::Shader`](crate::Error::Shader) if the driver refuses a shader, [`Error::Gl`](crate::Error::Gl) when memory runs
-    /// out.
+    /// [`Error::Setting`](crate::Error::Setting) outside of a setting's range,
+    /// [`Error::TooLarge`](crate::Error::TooLarge), [`Error::Shader`](crate::Error::Shader) if the driver
+    /// refuses a shader, [`Error::Gl`](crate::Error::Gl) when memory runs out.
     pub fn new(gl: &Gl, size: UVec2, settings: IrradianceSettings) -> Result<Self> {
         settings.validate()?;
         check_fits(gl.info(), size)?;
@@ -73,11 +74,12 @@ impl IrradiancePipeline {
         Ok(radii + bytes_of(&[DensityStage::shape(size)]) + Spreads::bytes(size, settings))
     }
 
-    /// From now on for surfaces of `size`, without photons: programs stay, textures are made anew. The same size is free, and
-    /// changes nothing.
+    /// From now on for surfaces of `size`, without photons: programs stay, textures are made anew. The same
+    /// size is free, and changes nothing.
     ///
     /// # Errors
-    /// Those of [`RadiusPipeline::resize`]; but for a lost context, the pipeline then goes on at its old size, with what it held.
+    /// Those of [`RadiusPipeline::resize`]; but for a lost context, the pipeline then goes on at its old
+    /// size, with what it held.
     pub fn resize(&mut self, size: UVec2) -> Result<()> {
         if size == self.size() {
             return self.gl.current().map(drop);
@@ -99,10 +101,11 @@ impl IrradiancePipeline {
         Ok(())
     }
 
-    /// Goes on with other settings and the photons that were counted; their light has to be [`spread`](Self::spread) anew.
+    /// Goes on with other settings and the photons that were counted; their light has to be
+    /// [`spread`](Self::spread) anew.
     ///
-    /// What was compiled stays for later: a search of the same question, and the last kernel of a splat and of a gather, of
-    /// variable and of fixed radii. So it takes more memory than a new pipeline.
+    /// What was compiled stays for later: a search of the same question, and the last kernel of a splat and
+    /// of a gather, of variable and of fixed radii. So it takes more memory than a new pipeline.
     ///
     /// # Errors
     /// As [`new`](Self::new); the settings are those of before then.
@@ -139,7 +142,8 @@ impl IrradiancePipeline {
     /// # Errors
     /// [`Error::Mismatch`](crate::Error::Mismatch) if the surfaces have another size;
     /// [`Error::Inexact`](crate::Error::Inexact) where a pixel has more photons than can be counted, see
-    /// [`DensityStage::add`], and as [`RadiusPipeline::render`]; [`Error::Gl`](crate::Error::Gl) if the driver fails.
+    /// [`DensityStage::add`], and as [`RadiusPipeline::render`]; [`Error::Gl`](crate::Error::Gl) if the
+    /// driver fails.
     pub fn add(&mut self, surfaces: &SurfaceMaps, photons: &PhotonPoints) -> Result<&IrradianceMap> {
         self.count(surfaces, photons)?;
         self.spread(surfaces, photons)
@@ -168,8 +172,9 @@ impl IrradiancePipeline {
         Ok(Some(radii))
     }
 
-    /// Spreads these photons, which were counted before, with the radii of all photons so far, and adds their light to what
-    /// is there; a gather finds the light of all photons instead. Radii are searched if they were not since photons came.
+    /// Spreads these photons, which were counted before, with the radii of all photons so far, and adds their
+    /// light to what is there; a gather finds the light of all photons instead. Radii are searched if they
+    /// were not since photons came.
     ///
     /// # Errors
     /// As [`add`](Self::add).
@@ -255,7 +260,8 @@ fn radius_pipeline(gl: &Gl, size: UVec2, settings: Settings) -> Result<RadiusPip
     RadiusPipeline::new(gl, size, TextureFormat::R32Float, settings)
 }
 
-/// Every shader that photons become irradiance by, beside those of the radius map: density, splats and gathers of all kernels.
+/// Every shader that photons become irradiance by, beside those of the radius map: density, splats and
+/// gathers of all kernels.
 #[must_use]
 pub fn shader_sources() -> Vec<ShaderSource> {
     let radii = [RadiusChoice::Variable, RadiusChoice::Fixed(1)];

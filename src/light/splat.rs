@@ -1,20 +1,23 @@
 //! Photons and radii to irradiance: each photon drawn as its kernel (thesis 2.6.2).
 //!
-//! - The kernel is a disc on the photon's surface with the area of the box that the radius map found, so that it holds about
-//!   as many photons; it is flat along the normal and foreshortened as its surface is.
-//! - Energy: a first draw sums, for each photon, its weights over the pixels that it covers, times their areas; a second
-//!   spreads the photon's power over that sum. What would fall past the picture's edge, behind something or around a corner
-//!   goes to the pixels that are covered, so that the picture holds exactly the power of its photons.
-//! - Leaks: a kernel ends where the surface ends or turns by more than 60 degrees, so over such edges nothing gets at all: at box
-//!   edges, in corners and where a box stands on the floor (`tests/gpu/leaks.rs`, every face of the Cornell box with its boxes).
-//!   Along one face a kernel does not see what stands on it: of the floor's light 0.6 % arrives on the other side of a box
-//!   (96 x 96 pixels, 30,000 photons, n = 400), the more the wider the kernels are: 6.9 % at 3 times the width. It is 0 on all
-//!   other surfaces.
-//! - Cost: about 4 (2 R + 1)² / π fragments a photon, and as many fetches for the sums. Memory: 32 bytes a pixel, and 256 KiB.
-//! - Rounding: blending adds in f32, where a sum of N alike kernels is off by up to N 2^-25 of itself. So the kernels of 2^16
-//!   photons are summed apart, and then added: 10^6 on one pixel are off by 5.5e-4 if all are alike, where one sum was off by
-//!   5.4e-3, and by 4e-8 if they are mixed, where it was 2.7e-5; less than 2^-9 up to the 10^7 that were measured
-//!   (`splat-sum` of `varikernel stress`). It costs less than times vary (4 %). The last bits depend on the order of the photons.
+//! - The kernel is a disc on the photon's surface with the area of the box that the radius map found, so that
+//!   it holds about as many photons; it is flat along the normal and foreshortened as its surface is.
+//! - Energy: a first draw sums, for each photon, its weights over the pixels that it covers, times their
+//!   areas; a second spreads the photon's power over that sum. What would fall past the picture's edge,
+//!   behind something or around a corner goes to the pixels that are covered, so that the picture holds
+//!   exactly the power of its photons.
+//! - Leaks: a kernel ends where the surface ends or turns by more than 60 degrees, so over such edges nothing
+//!   gets at all: at box edges, in corners and where a box stands on the floor (`tests/gpu/leaks.rs`, every
+//!   face of the Cornell box with its boxes). Along one face a kernel does not see what stands on it: of the
+//!   floor's light 0.6 % arrives on the other side of a box (96 x 96 pixels, 30,000 photons, n = 400), the
+//!   more the wider the kernels are: 6.9 % at 3 times the width. It is 0 on all other surfaces.
+//! - Cost: about 4 (2 R + 1)² / π fragments a photon, and as many fetches for the sums. Memory: 32 bytes a
+//!   pixel, and 256 KiB.
+//! - Rounding: blending adds in f32, where a sum of N alike kernels is off by up to N 2^-25 of itself. So the
+//!   kernels of 2^16 photons are summed apart, and then added: 10^6 on one pixel are off by 5.5e-4 if all are
+//!   alike, where one sum was off by 5.4e-3, and by 4e-8 if they are mixed, where it was 2.7e-5; less than
+//!   2^-9 up to the 10^7 that were measured (`splat-sum` of `varikernel stress`). It costs less than times
+//!   vary (4 %). The last bits depend on the order of the photons.
 //! - Against the thesis: the falloff is a formula instead of a 1D texture, and its sums are taken as drawn.
 
 use glam::{UVec2, Vec4};
@@ -52,11 +55,12 @@ pub struct SplatStage {
 }
 
 impl SplatStage {
-    /// Allocates and compiles for maps of `size`, still dark, and for the kernel and the kind of radii of `settings`:
-    /// from a map, or the same everywhere, whatever that radius is.
+    /// Allocates and compiles for maps of `size`, still dark, and for the kernel and the kind of radii of
+    /// `settings`: from a map, or the same everywhere, whatever that radius is.
     ///
     /// # Errors
-    /// [`Error::TooLarge`](crate::Error::TooLarge); [`Error::Shader`](crate::Error::Shader) if the driver refuses a shader; [`Error::Gl`](crate::Error::Gl) when memory runs out.
+    /// [`Error::TooLarge`](crate::Error::TooLarge); [`Error::Shader`](crate::Error::Shader) if the driver
+    /// refuses a shader; [`Error::Gl`](crate::Error::Gl) when memory runs out.
     pub fn new(gl: &Gl, size: UVec2, settings: &IrradianceSettings) -> Result<Self> {
         let _state = StateGuard::new(gl);
         let [covered, spread, addition] = sources(settings);
@@ -116,8 +120,9 @@ impl SplatStage {
     /// Spreads photons and adds them to the light that is there.
     ///
     /// # Errors
-    /// [`Error::Mismatch`](crate::Error::Mismatch) if surfaces or radii have another size, or the radius is fixed and the stage's is not, or the other
-    /// way round; [`Error::Gl`](crate::Error::Gl) if the driver fails.
+    /// [`Error::Mismatch`](crate::Error::Mismatch) if surfaces or radii have another size, or the radius is
+    /// fixed and the stage's is not, or the other way round; [`Error::Gl`](crate::Error::Gl) if the driver
+    /// fails.
     pub fn add(
         &mut self,
         surfaces: &SurfaceMaps,
@@ -172,15 +177,17 @@ pub(super) fn sources(settings: &IrradianceSettings) -> [ShaderSource; 3] {
     [
         with_photon_kernel(source(COVERED, settings))
             .targets([TextureFormat::R32Float])
-            .vertex_file(glsl!("splat/covered.vert"))
-            .file(glsl!("splat/covered.frag")),
+            .vertex_file(glsl!("light/splat/covered.vert"))
+            .file(glsl!("light/splat/covered.frag")),
         with_photon_kernel(source(SPREAD, settings))
             .targets([TextureFormat::Rgba32Float])
-            .vertex_file(glsl!("splat/spread.vert"))
+            .vertex_file(glsl!("light/splat/spread.vert"))
             .file(glsl!("common/surfaces.glsl"))
             .file(glsl!("common/kernel.glsl"))
             .file(glsl!("common/photon_kernel.glsl"))
-            .file(glsl!("splat/spread.frag")),
-        ShaderSource::new(ADDITION).targets([TextureFormat::Rgba32Float]).file(glsl!("splat/addition.frag")),
+            .file(glsl!("light/splat/spread.frag")),
+        ShaderSource::new(ADDITION)
+            .targets([TextureFormat::Rgba32Float])
+            .file(glsl!("light/splat/addition.frag")),
     ]
 }

@@ -1,4 +1,5 @@
-//! The ways from radii to light that a pipeline holds: a splat and a gather, for radii from a map and for fixed ones.
+//! The ways from radii to light that a pipeline holds: a splat and a gather, for radii from a map and for
+//! fixed ones.
 
 use glam::UVec2;
 
@@ -90,7 +91,8 @@ impl Spreads {
         Ok(())
     }
 
-    /// The targets of all of them for another size, in the order in which [`resize`](Self::resize) takes them.
+    /// The targets of all of them for another size, in the order in which [`resize`](Self::resize) takes
+    /// them.
     pub(super) fn shapes(&self, size: UVec2) -> Vec<TargetShape> {
         let of = |spread: &Spread| match spread.stage {
             Stage::Splat(_) => SplatStage::shapes(size).to_vec(),

@@ -106,7 +106,7 @@ impl MaskMaker {
     /// The shader.
     #[must_use]
     pub fn shader_source() -> ShaderSource {
-        ShaderSource::new(TESTED).targets([TextureFormat::R8Uint]).file(glsl!("mask/one.frag"))
+        ShaderSource::new(TESTED).targets([TextureFormat::R8Uint]).file(glsl!("maps/mask.frag"))
     }
 
     fn make(&mut self, texture: glow::Texture, test: FragmentTest) -> Result<&Mask> {

@@ -89,6 +89,6 @@ impl PositionMaker {
     /// The shader.
     #[must_use]
     pub fn shader_source() -> ShaderSource {
-        ShaderSource::new(LABEL).targets([TextureFormat::Rgba32Float]).file(glsl!("position.frag"))
+        ShaderSource::new(LABEL).targets([TextureFormat::Rgba32Float]).file(glsl!("maps/position.frag"))
     }
 }

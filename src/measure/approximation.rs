@@ -148,7 +148,7 @@ fn half_density_source() -> ShaderSource {
     ShaderSource::new(HALF_DENSITY)
         .targets([TextureFormat::R32Uint])
         .file(glsl!("common/sum.glsl"))
-        .file(glsl!("build/summed_mipmap.frag"))
+        .file(glsl!("radius/tables/summed_mipmap.frag"))
 }
 
 fn interpolation_source() -> ShaderSource {

@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3};
 
-use super::emission::{Cone, Leaving};
+use super::direction::Cone;
 use crate::scene::{AreaLight, Light, LightShape, Scene};
 
 /// A light is far if it is this many times the radius of the sphere around everything else away from its
@@ -32,11 +32,11 @@ impl Aim {
         Cone::new(away, height)
     }
 
-    /// Where a photon starts: near the sphere, as nothing is before that. From far away its place and
-    /// direction, which are kept in f32, would be too coarse.
-    pub(super) fn near(&self, leaving: &Leaving) -> DVec3 {
-        let skipped = (self.centre - leaving.origin).dot(leaving.direction) - 1.5 * self.radius;
-        leaving.origin + skipped.max(0.0) * leaving.direction
+    /// Where a photon that leaves a place in a direction starts: near the sphere, as nothing is before that.
+    /// From far away its place and direction, which are kept in f32, would be too coarse.
+    pub(super) fn near(&self, origin: DVec3, direction: DVec3) -> DVec3 {
+        let skipped = (self.centre - origin).dot(direction) - 1.5 * self.radius;
+        origin + skipped.max(0.0) * direction
     }
 }
 

@@ -5,13 +5,14 @@
 //! inside it. A light that is far from everything else sends its photons towards that alone, each with its
 //! part of the light that goes there.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::PI;
 
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
 
 use super::TraceSettings;
 use super::aim::Aim;
+use super::direction::{Cone, cosine_around};
 use super::random::{Purpose, Stream};
 use crate::error::{Error, Result};
 use crate::scene::{AreaLight, Light, LightSample, LightShape, Scene, cap_height};
@@ -140,7 +141,7 @@ impl<'a> Emission<'a> {
             }
         };
         let origin = match &part.aim {
-            Some(aim) => aim.near(&leaving),
+            Some(aim) => aim.near(leaving.origin, leaving.direction),
             None => leaving.origin,
         };
         let power = (leaving.power / f64::from(part.count)).as_vec3();
@@ -206,38 +207,11 @@ fn counts(weights: &[f64], photons: u32) -> Option<Vec<u32>> {
 }
 
 /// A photon on its light.
-pub(super) struct Leaving {
-    pub(super) origin: DVec3,
-    pub(super) direction: DVec3,
+struct Leaving {
+    origin: DVec3,
+    direction: DVec3,
     /// Times the number of the light's photons.
     power: DVec3,
-}
-
-/// Directions around an axis, up to an angle whose 1 - cos is the height, which is precise for small angles
-/// as well as large ones.
-pub(super) struct Cone {
-    axis: DVec3,
-    height: f64,
-}
-
-impl Cone {
-    pub(super) fn new(axis: DVec3, height: f64) -> Self {
-        Self { axis: axis.normalize(), height }
-    }
-
-    fn direction(&self, [u, v]: [f64; 2]) -> DVec3 {
-        let height = u * self.height;
-        around(self.axis, 1.0 - height, (height * (2.0 - height)).max(0.0).sqrt(), v)
-    }
-
-    fn solid_angle(&self) -> f64 {
-        TAU * self.height
-    }
-
-    /// Whether a direction of length 1 is in it; at its edge, also where rounding puts it a little beyond.
-    fn holds(&self, direction: DVec3) -> bool {
-        (direction - self.axis).length_squared() / 2.0 <= self.height * (1.0 + 1e-9)
-    }
 }
 
 fn leave_point(position: DVec3, cone: &Cone, intensity: DVec3, aim: Option<&Aim>, uv: [f64; 2]) -> Leaving {
@@ -276,17 +250,4 @@ fn stratum(index: u32, count: u32, random: &mut Stream) -> [f64; 2] {
     #[expect(clippy::cast_precision_loss, reason = "all are below 2^32")]
     let [cell, begin, cells, count] = [index - begin, begin, end - begin, count].map(|number| number as f64);
     [(cell + random.number()) / cells, (begin + cells * random.number()) / count]
-}
-
-/// A direction around `normal` by Lambert's law: as likely as the cosine of its angle to the normal.
-pub(super) fn cosine_around(normal: DVec3, random: &mut Stream) -> DVec3 {
-    let cos = (1.0 - random.number()).sqrt();
-    around(normal, cos, (1.0 - cos * cos).max(0.0).sqrt(), random.number())
-}
-
-/// The direction at an angle of the given cosine and sine from `axis`, `turn` of the way around it.
-fn around(axis: DVec3, cos: f64, sin: f64, turn: f64) -> DVec3 {
-    let (side, other) = axis.any_orthonormal_pair();
-    let (sin_turn, cos_turn) = (TAU * turn).sin_cos();
-    sin * (cos_turn * side + sin_turn * other) + cos * axis
 }

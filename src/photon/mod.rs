@@ -4,13 +4,17 @@
 #[cfg(feature = "scene")]
 mod aim;
 #[cfg(feature = "scene")]
+mod direction;
+#[cfg(feature = "scene")]
 mod emission;
 #[cfg(feature = "scene")]
-mod files;
+mod file_format;
 #[cfg(feature = "scene")]
 mod landing;
 #[cfg(feature = "scene")]
 mod landings;
+#[cfg(feature = "scene")]
+mod output;
 #[cfg(feature = "scene")]
 mod path;
 mod point;
@@ -21,18 +25,20 @@ mod records;
 #[cfg(feature = "scene")]
 mod scatter;
 #[cfg(feature = "scene")]
-mod settings;
+mod trace_settings;
 #[cfg(feature = "scene")]
 mod tracer;
 
 #[cfg(feature = "scene")]
 pub use emission::{Emission, EmittedPhoton, FirstHit};
 #[cfg(feature = "scene")]
-pub use files::{PhotonFormat, write};
+pub use file_format::PhotonFormat;
 #[cfg(feature = "scene")]
 pub use landing::Photon;
 #[cfg(feature = "scene")]
 pub use landings::{Ends, Landings, Tally};
+#[cfg(feature = "scene")]
+pub use output::write;
 #[cfg(feature = "scene")]
 pub use path::MAX_SPECULAR;
 pub use point::PhotonPoint;
@@ -41,6 +47,6 @@ pub(crate) use scatter::mirrored;
 #[cfg(feature = "scene")]
 pub use scatter::{reflect, reflected_by_pane, refract};
 #[cfg(feature = "scene")]
-pub use settings::TraceSettings;
+pub use trace_settings::TraceSettings;
 #[cfg(feature = "scene")]
 pub use tracer::{trace, trace_from, trace_from_hits, trace_in_batches};

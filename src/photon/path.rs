@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3};
 
-use super::emission::cosine_around;
+use super::direction::cosine_around;
 use super::random::{Purpose, Stream};
 use super::scatter::{mirrored, reflected_by_pane, refract};
 use super::{EmittedPhoton, Photon, Tally, TraceSettings};

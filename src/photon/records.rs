@@ -3,7 +3,7 @@
 use std::io;
 
 use super::Photon;
-use super::files::PhotonFormat;
+use super::file_format::PhotonFormat;
 use crate::scene::Scene;
 
 /// Names of the numbers of a landing, in their order.

@@ -10,7 +10,8 @@ use crate::gl::{
 use crate::maps::CountBounds;
 use crate::maps::RadiusMap;
 use crate::maps::{Changed, Frame};
-use crate::radius::planner::{self, CENSUS_SIDE, Census, Choice};
+use crate::radius::census::{self, CENSUS_SIDE, Census};
+use crate::radius::planner::{self, Choice};
 use crate::radius::tables;
 use crate::radius::{MemoryRequired, RadiusPipeline};
 use crate::settings::Settings;
@@ -161,7 +162,7 @@ fn first_choice(size: UVec2, settings: &Settings) -> Choice {
 
 /// A count for each tile.
 fn census_shape(size: UVec2) -> TargetShape {
-    vec![TextureShape::new(CENSUS, TextureFormat::R32Uint, planner::tiles(size))]
+    vec![TextureShape::new(CENSUS, TextureFormat::R32Uint, census::tiles(size))]
 }
 
 /// The census is a texture and a buffer of its size.
@@ -173,5 +174,5 @@ fn with_census(size: UVec2, pipeline: MemoryRequired) -> MemoryRequired {
 fn census_source(density: TextureFormat, settings: &Settings) -> ShaderSource {
     let source =
         ShaderSource::new(CENSUS).targets([TextureFormat::R32Uint]).define("CENSUS_SIDE", CENSUS_SIDE);
-    tables::counter(source, density, settings).file(glsl!("census.frag"))
+    tables::counter(source, density, settings).file(glsl!("radius/census.frag"))
 }

@@ -187,11 +187,12 @@ fn radii_source(density: TextureFormat, settings: &Settings, with_limited: bool)
         .define_if(exactness::needs_wide_products(settings), "WIDE_PRODUCTS")
         .define_if(with_limited, "LIMITED_MASK")
         .file(glsl!("common/enough.glsl"));
-    tables::counter(source, density, &faultless(settings)).file(glsl!("certify/radii.frag"))
+    tables::counter(source, density, &faultless(settings)).file(glsl!("radius/certificate/radii.frag"))
 }
 
 fn entries_source(density: TextureFormat, settings: &Settings) -> ShaderSource {
-    tables::density_access(ShaderSource::new(ENTRIES), density, settings).file(glsl!("certify/entries.frag"))
+    tables::density_access(ShaderSource::new(ENTRIES), density, settings)
+        .file(glsl!("radius/certificate/entries.frag"))
 }
 
 /// The same question, counted as it is meant.

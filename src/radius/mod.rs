@@ -4,6 +4,7 @@
 //! table, build and order suit a map, and [`certificate`] proves a result without the definition.
 
 mod adaptive;
+mod census;
 pub mod certificate;
 mod driver_limits;
 mod pipeline;
@@ -12,6 +13,7 @@ pub(crate) mod search;
 pub mod tables;
 
 pub use adaptive::AdaptivePipeline;
+pub use census::{CENSUS_SIDE, Census};
 pub use certificate::Certificate;
 pub(crate) use pipeline::check_fits;
 pub use pipeline::{MemoryRequired, RadiusPipeline, shader_sources};

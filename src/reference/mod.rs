@@ -10,12 +10,12 @@ mod definition;
 mod naive_mipmap;
 mod picture;
 pub mod pyramid;
-mod table;
+mod summed_area_table;
 
 pub use definition::{enough, radius};
 pub use naive_mipmap::naive_mipmap;
 pub use picture::{Shown, gather, gather_at, photon_density, photon_power, splat};
-pub use table::{Table, binary_search, radius_by_table};
+pub use summed_area_table::{Table, binary_search, radius_by_table};
 
 use glam::UVec2;
 

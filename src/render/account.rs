@@ -25,19 +25,21 @@ pub struct Account {
     pub power_out: [f64; 3],
     /// Fragments that the splat drew; photons that the gather found.
     pub fragments: f64,
-    /// Share of the lights' power that reflection would have sent on after the last landing that was asked for: light that the picture
-    /// lacks, and what it would have brought at further landings. Mean of the three colours; 0 for photons that the caller traced.
+    /// Share of the lights' power that reflection would have sent on after the last landing that was asked
+    /// for: light that the picture lacks, and what it would have brought at further landings. Mean of the
+    /// three colours; 0 for photons that the caller traced.
     pub cut_off_share: f64,
-    /// Share of pixels on diffuse surfaces whose search MR ended; 0 with a fixed radius, which asks for no search.
+    /// Share of pixels on diffuse surfaces whose search MR ended; 0 with a fixed radius, which asks for no
+    /// search.
     pub limited_share: f64,
 }
 
 impl Account {
     /// By how much power out differs from power in, over power in: the worst of the three colours.
     ///
-    /// Both are sums of blending in f32. Power in is one sum for each pixel, which of N alike photons on a pixel is off by up to
-    /// N 2^-25 of itself; power out is summed more closely. So where a pixel holds 10^5 photons or more, a larger error may be
-    /// that of power in.
+    /// Both are sums of blending in f32. Power in is one sum for each pixel, which of N alike photons on a
+    /// pixel is off by up to N 2^-25 of itself; power out is summed more closely. So where a pixel holds 10^5
+    /// photons or more, a larger error may be that of power in.
     #[must_use]
     pub fn energy_error(&self) -> f64 {
         let pairs = self.power_in.iter().zip(self.power_out);

@@ -1,10 +1,12 @@
 //! What photons meet first, rasterised from the lights (thesis 2.6.1).
 //!
-//! - Photons are cut into groups that leave from one place each, spread evenly over the lights; around each place a cube of
-//!   five or six maps is drawn, whose texels tell the nearest triangle or sphere. A photon reads the texel of its direction.
-//! - Against the thesis: of Table 2.1 the map holds only what the rasteriser has to find. Power and direction are those that the
-//!   emission drew by its seed, and place, normal and index are computed again from the primitive, exactly. So photons
-//!   do not lie on a grid of texels, and only within a texel of an edge may the wrong one of two primitives be taken.
+//! - Photons are cut into groups that leave from one place each, spread evenly over the lights; around each
+//!   place a cube of five or six maps is drawn, whose texels tell the nearest triangle or sphere. A photon
+//!   reads the texel of its direction.
+//! - Against the thesis: of Table 2.1 the map holds only what the rasteriser has to find. Power and direction
+//!   are those that the emission drew by its seed, and place, normal and index are computed again from the
+//!   primitive, exactly. So photons do not lie on a grid of texels, and only within a texel of an edge may
+//!   the wrong one of two primitives be taken.
 //! - Cost: a draw of the scene and a read-back for each map, 256 KiB.
 
 use glam::{UVec2, Vec3};

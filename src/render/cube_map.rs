@@ -1,9 +1,11 @@
 //! What is nearest around a place, rasterised: six maps, one for each side of a cube (thesis 2.2, 2.6.1).
 //!
-//! - A texel holds the nearest triangle or sphere in its direction, from 1; the triangles come first, in the order of the
-//!   scene, then the spheres. 0 is nothing.
-//! - The depth test is by the distance from the place, not by z of the projection, which would be coarse far away.
-//! - Sides may reach beyond the cube's edges by some texels, so that a texel at an edge has all its neighbours.
+//! - A texel holds the nearest triangle or sphere in its direction, from 1; the triangles come first, in the
+//!   order of the scene, then the spheres. 0 is nothing.
+//! - The depth test is by the distance from the place, not by z of the projection, which would be coarse far
+//!   away.
+//! - Sides may reach beyond the cube's edges by some texels, so that a texel at an edge has all its
+//!   neighbours.
 //! - Cost: a draw of the scene for each side.
 
 use bytemuck::{Pod, Zeroable};
@@ -24,7 +26,7 @@ pub(crate) const NEAREST: f32 = 1e-12;
 /// Sides of a cube.
 pub(crate) const FACES: usize = 6;
 
-/// As `surfaces/triangles.vert` takes it.
+/// As `render/surfaces/triangles.vert` takes it.
 #[derive(Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
 struct Corner {
@@ -35,7 +37,7 @@ struct Corner {
     number: f32,
 }
 
-/// As `surfaces/spheres.vert` takes it.
+/// As `render/surfaces/spheres.vert` takes it.
 #[derive(Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
 struct CubeCorner {
@@ -191,15 +193,15 @@ pub(crate) fn sources() -> [ShaderSource; 2] {
     [
         ShaderSource::new(TRIANGLES)
             .targets([TextureFormat::R32Uint])
-            .vertex_file(glsl!("surfaces/triangles.vert"))
-            .file(glsl!("surfaces/ray.glsl"))
-            .file(glsl!("surfaces/plane.glsl"))
-            .file(glsl!("cube_map/triangles.frag")),
+            .vertex_file(glsl!("render/surfaces/triangles.vert"))
+            .file(glsl!("render/surfaces/ray.glsl"))
+            .file(glsl!("render/surfaces/plane.glsl"))
+            .file(glsl!("render/cube_map/triangles.frag")),
         ShaderSource::new(SPHERES)
             .targets([TextureFormat::R32Uint])
             .define("PRIMITIVES", 1_u32)
-            .vertex_file(glsl!("surfaces/spheres.vert"))
-            .file(glsl!("surfaces/ray.glsl"))
-            .file(glsl!("surfaces/spheres.frag")),
+            .vertex_file(glsl!("render/surfaces/spheres.vert"))
+            .file(glsl!("render/surfaces/ray.glsl"))
+            .file(glsl!("render/surfaces/spheres.frag")),
     ]
 }

@@ -1,7 +1,7 @@
 //! Direct light with soft shadows: rays from a place to the lights, on the CPU.
 //!
-//! Area lights are sampled by power among their triangles and by area on each, one ray in each cell of a grid; glass casts a hard
-//! shadow, since photons bring the light that passes it.
+//! Area lights are sampled by power among their triangles and by area on each, one ray in each cell of a
+//! grid; glass casts a hard shadow, since photons bring the light that passes it.
 
 use std::f64::consts::PI;
 

@@ -17,7 +17,8 @@ pub struct Layers {
     pub density: Image<f32>,
     /// R, in pixels.
     pub radius: Image<u32>,
-    /// 1 where MR ended the search with too few photons, else 0; with a fixed radius nothing is searched, and all are 0.
+    /// 1 where MR ended the search with too few photons, else 0; with a fixed radius nothing is searched, and
+    /// all are 0.
     pub limited: Image<u8>,
     /// Of length 1 towards the camera; 0 where nothing is seen.
     pub normal: Image<[f32; 3]>,

@@ -1,7 +1,8 @@
 //! Scene in, picture out: the stages in order (thesis 2.4, 2.6).
 //!
-//! Surfaces, density, radii, splats and shading are passes on OpenGL; photons and what is seen in mirrors and through glass are
-//! rays on the CPU. Direct light and what photons meet first are either: shadow rays or shadow maps, rays or bounce maps.
+//! Surfaces, density, radii, splats and shading are passes on OpenGL; photons and what is seen in mirrors and
+//! through glass are rays on the CPU. Direct light and what photons meet first are either: shadow rays or
+//! shadow maps, rays or bounce maps.
 
 mod account;
 mod bounce_map;
@@ -54,7 +55,8 @@ pub struct Progress {
     pub done: f64,
 }
 
-/// A scene with its photons traced, direct light found and density counted: all that does not depend on the radius.
+/// A scene with its photons traced, direct light found and density counted: all that does not depend on the
+/// radius.
 #[derive(Debug)]
 pub struct Renderer {
     gl: Gl,
@@ -136,11 +138,12 @@ impl Renderer {
         &self.surfaces
     }
 
-    /// The picture with the radius, kernel and estimate of `settings`; its size and shadow rays are those of before.
+    /// The picture with the radius, kernel and estimate of `settings`; its size and shadow rays are those of
+    /// before.
     ///
     /// # Errors
-    /// As [`Renderer::new`], and [`Error::Inexact`](crate::Error::Inexact) where a pixel has more photons than can be
-    /// counted.
+    /// As [`Renderer::new`], and [`Error::Inexact`](crate::Error::Inexact) where a pixel has more photons
+    /// than can be counted.
     pub fn picture(&mut self, settings: &PictureSettings) -> Result<(Layers, Account)> {
         settings.validate()?;
         let asked = settings.irradiance();
@@ -183,8 +186,9 @@ impl Renderer {
         Ok((layers, account))
     }
 
-    /// Compiles and allocates what a picture with these settings needs, so that the next one takes as long as those after it:
-    /// radii are searched, and again for the next picture, and a photon that is nowhere is drawn.
+    /// Compiles and allocates what a picture with these settings needs, so that the next one takes as long as
+    /// those after it: radii are searched, and again for the next picture, and a photon that is nowhere is
+    /// drawn.
     ///
     /// # Errors
     /// As [`picture`](Self::picture).
@@ -212,7 +216,8 @@ fn rgb([red, green, blue, _]: [f32; 4]) -> [f32; 3] {
     [red, green, blue]
 }
 
-/// The shaders of a picture beside those of its light by photons: what photons meet first, and what pixels show.
+/// The shaders of a picture beside those of its light by photons: what photons meet first, and what pixels
+/// show.
 #[must_use]
 pub fn surface_sources() -> Vec<ShaderSource> {
     cube_map::sources().into_iter().chain(surfaces::sources()).collect()

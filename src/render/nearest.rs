@@ -1,5 +1,5 @@
-//! The photons around a place, found in a grid of cells: for places that are seen in mirrors and through glass, which no
-//! map of the picture holds.
+//! The photons around a place, found in a grid of cells: for places that are seen in mirrors and through
+//! glass, which no map of the picture holds.
 
 use glam::{DVec3, IVec3, Vec3};
 
@@ -24,8 +24,8 @@ pub(super) enum Width {
 /// Photons that tell where most of them are.
 const ASKED: usize = 4096;
 
-/// The corners of a box that leaves out at most a hundredth of the photons on each of its sides: a few that land far away would make all
-/// cells coarse.
+/// The corners of a box that leaves out at most a hundredth of the photons on each of its sides: a few that
+/// land far away would make all cells coarse.
 fn around_most(photons: &[PhotonPoint]) -> (Vec3, Vec3) {
     let step = photons.len().div_ceil(ASKED).max(1);
     let ends = |axis: usize| {
@@ -50,8 +50,8 @@ pub(super) struct PhotonGrid {
 }
 
 impl PhotonGrid {
-    /// Sorts photons into cells. The grid holds most of them; those beyond it are in the cells at its border, which are as near to any
-    /// place as the photons are, or nearer.
+    /// Sorts photons into cells. The grid holds most of them; those beyond it are in the cells at its border,
+    /// which are as near to any place as the photons are, or nearer.
     pub(super) fn new(photons: &[PhotonPoint]) -> Self {
         let (min, max) = around_most(photons);
         let cell = ((max - min).max_element() / CELLS).max(f32::MIN_POSITIVE);

@@ -1,5 +1,5 @@
-//! A picture without kernels: each pixel keeps its own photons only, averaged over many seeds. It is noisy for long, and right
-//! in the end: what other pictures are compared with.
+//! A picture without kernels: each pixel keeps its own photons only, averaged over many seeds. It is noisy
+//! for long, and right in the end: what other pictures are compared with.
 
 use glam::DVec3;
 

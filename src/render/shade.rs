@@ -12,8 +12,8 @@ const LABEL: &str = "shade";
 /// Light that is found on the CPU: radiance towards the camera, linear RGB.
 #[derive(Clone, Debug)]
 pub(crate) struct TracedLight {
-    /// Of lights, seen and reflected once by a diffuse surface; also in mirrors and through glass. The fourth value is 1
-    /// where the pixel shows a diffuse surface, else 0.
+    /// Of lights, seen and reflected once by a diffuse surface; also in mirrors and through glass. The fourth
+    /// value is 1 where the pixel shows a diffuse surface, else 0.
     pub(crate) direct: Image<[f32; 4]>,
     /// Indirect light that is seen in mirrors and through glass.
     pub(crate) seen_through: Image<[f32; 4]>,
@@ -108,5 +108,5 @@ impl ShadeStage {
 }
 
 pub(crate) fn source() -> ShaderSource {
-    ShaderSource::new(LABEL).targets([TextureFormat::Rgba32Float; 2]).file(glsl!("shade.frag"))
+    ShaderSource::new(LABEL).targets([TextureFormat::Rgba32Float; 2]).file(glsl!("render/shade.frag"))
 }

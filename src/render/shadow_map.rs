@@ -1,16 +1,19 @@
 //! Direct light by shadow maps (thesis 2.2; McGuire and Luebke's deferred direct light).
 //!
-//! - Around each place of a light, a cube of maps tells what is nearest to it. A pixel is lit if what the map tells in its
-//!   direction is not between the two. Area lights are some places, spread evenly, whose shadows add up to a soft one.
-//! - Against the thesis: maps hold primitives instead of depths, and pixels meet those again, exactly. So shadows have edges
-//!   as sharp as with rays, and there is no depth bias: only what is nearer to a surface, or to the light, than 2·10^-6 of the
-//!   distances from the camera and the origin casts no shadow. What no texel sees, since it is thinner or behind something else, casts none either; a gap
-//!   between triangles that is thinner than a texel is taken for a crack, and closed, if it is more than two texels away.
+//! - Around each place of a light, a cube of maps tells what is nearest to it. A pixel is lit if what the map
+//!   tells in its direction is not between the two. Area lights are some places, spread evenly, whose shadows
+//!   add up to a soft one.
+//! - Against the thesis: maps hold primitives instead of depths, and pixels meet those again, exactly. So
+//!   shadows have edges as sharp as with rays, and there is no depth bias: only what is nearer to a surface,
+//!   or to the light, than 2·10^-6 of the distances from the camera and the origin casts no shadow. What no
+//!   texel sees, since it is thinner or behind something else, casts none either; a gap between triangles
+//!   that is thinner than a texel is taken for a crack, and closed, if it is more than two texels away.
 //! - Glass and mirrors cast hard shadows: photons bring the light that passes them.
 //! - Places are the same for all pixels: few of them give steps, where rays give noise.
-//! - Cost: for each place a draw of the scene and one pass over the picture for each side of the cube that it shines through:
-//!   five for area lights, one for a narrow cone. On llvmpipe that is about twice the processor time of as many rays
-//!   (`render cornell-boxes --photons 1e3`: 3.3 s against 1.6 s in all). Memory: 16 bytes a pixel, 2 MiB, and 64 bytes for each primitive.
+//! - Cost: for each place a draw of the scene and one pass over the picture for each side of the cube that it
+//!   shines through: five for area lights, one for a narrow cone. On llvmpipe that is about twice the
+//!   processor time of as many rays (`render cornell-boxes --photons 1e3`: 3.3 s against 1.6 s in all).
+//!   Memory: 16 bytes a pixel, 2 MiB, and 64 bytes for each primitive.
 
 use glam::{DVec3, UVec2, Vec3, Vec4};
 
@@ -60,8 +63,8 @@ impl ShadowMaps {
         })
     }
 
-    /// Irradiance from `places` at what each pixel shows, linear RGB, and how many places are seen from there; 0 on mirrors
-    /// and glass and where nothing is seen. `show` is told the done share.
+    /// Irradiance from `places` at what each pixel shows, linear RGB, and how many places are seen from
+    /// there; 0 on mirrors and glass and where nothing is seen. `show` is told the done share.
     pub(crate) fn irradiance(
         &mut self,
         surfaces: &SurfaceMaps,
@@ -130,6 +133,6 @@ fn primitives(scene: &Scene) -> Image<[f32; 4]> {
 pub(crate) fn source() -> ShaderSource {
     ShaderSource::new(LABEL)
         .targets([TextureFormat::Rgba32Float])
-        .file(glsl!("shadow_map/between.glsl"))
-        .file(glsl!("shadow_map/light.frag"))
+        .file(glsl!("render/shadow_map/between.glsl"))
+        .file(glsl!("render/shadow_map/light.frag"))
 }

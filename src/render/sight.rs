@@ -1,7 +1,9 @@
-//! What each pixel sees, by rays on the CPU: the way through mirrors and glass to the diffuse surfaces behind them.
+//! What each pixel sees, by rays on the CPU: the way through mirrors and glass to the diffuse surfaces behind
+//! them.
 //!
-//! A g-buffer holds one surface a pixel, which is not enough where glass reflects one place and shows another. Such pixels
-//! get a short list of places instead, each with the share of its light that reaches the camera.
+//! A g-buffer holds one surface a pixel, which is not enough where glass reflects one place and shows
+//! another. Such pixels get a short list of places instead, each with the share of its light that reaches the
+//! camera.
 
 use glam::{DVec3, UVec2, Vec3};
 use rayon::prelude::*;
@@ -24,7 +26,8 @@ pub(super) struct Place {
     pub(super) position: DVec3,
     /// On the side that is seen.
     pub(super) normal: DVec3,
-    /// Of the light that arrives there, what reaches the camera: albedo times that of the mirrors and glass on the way.
+    /// Of the light that arrives there, what reaches the camera: albedo times that of the mirrors and glass
+    /// on the way.
     pub(super) share: Vec3,
     /// From the camera, along the way.
     pub(super) distance: f64,
@@ -41,7 +44,8 @@ pub(super) struct Sight {
     pub(super) bent: Vec<Place>,
     /// Pixels, and the radiance of what shines by itself in them.
     pub(super) lights: Vec<(u32, Vec3)>,
-    /// Pixels that show a diffuse surface straight, and its reflectance; only where it differs within a material.
+    /// Pixels that show a diffuse surface straight, and its reflectance; only where it differs within a
+    /// material.
     pub(super) albedos: Vec<(u32, Vec3)>,
 }
 

@@ -38,7 +38,8 @@ impl Renderer {
         self.pipeline.search().map(drop)
     }
 
-    /// Spreads or gathers all photons, with the radii that are there; what a kernel needs is compiled for its first time.
+    /// Spreads or gathers all photons, with the radii that are there; what a kernel needs is compiled for its
+    /// first time.
     ///
     /// # Errors
     /// As [`IrradiancePipeline::change`] and [`IrradiancePipeline::spread`].

@@ -1,11 +1,13 @@
 //! Scene and camera to what each pixel shows: place, normal and albedo of the nearest surface (thesis 2.3.2).
 //!
-//! - Triangles are rasterised with a depth test by distance, which f32 keeps as finely near as far, so that nothing is too near or too
-//!   far to be seen. A fragment meets the plane of its triangle along its own ray. Spheres are met exactly: a cube is rasterised around each, and the
-//!   fragments find where their line of sight meets the sphere.
+//! - Triangles are rasterised with a depth test by distance, which f32 keeps as finely near as far, so that
+//!   nothing is too near or too far to be seen. A fragment meets the plane of its triangle along its own ray.
+//!   Spheres are met exactly: a cube is rasterised around each, and the fragments find where their line of
+//!   sight meets the sphere.
 //! - Cost: one pass over the triangles and one over the spheres. Memory: 48 bytes a pixel, and 4 of depth.
 //! - Against the thesis: the place is kept, not only its depth, since photons are compared with it.
-//! - Mirrors and glass are shown as what they are, with a negative number: what is seen in them is another stage's job.
+//! - Mirrors and glass are shown as what they are, with a negative number: what is seen in them is another
+//!   stage's job.
 
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec3, Vec4};
@@ -137,14 +139,14 @@ pub(crate) fn sources() -> [ShaderSource; 2] {
     [
         ShaderSource::new(TRIANGLES)
             .targets([TextureFormat::Rgba32Float; 3])
-            .vertex_file(glsl!("surfaces/triangles.vert"))
-            .file(glsl!("surfaces/ray.glsl"))
-            .file(glsl!("surfaces/plane.glsl"))
-            .file(glsl!("surfaces/triangles.frag")),
+            .vertex_file(glsl!("render/surfaces/triangles.vert"))
+            .file(glsl!("render/surfaces/ray.glsl"))
+            .file(glsl!("render/surfaces/plane.glsl"))
+            .file(glsl!("render/surfaces/triangles.frag")),
         ShaderSource::new(SPHERES)
             .targets([TextureFormat::Rgba32Float; 3])
-            .vertex_file(glsl!("surfaces/spheres.vert"))
-            .file(glsl!("surfaces/ray.glsl"))
-            .file(glsl!("surfaces/spheres.frag")),
+            .vertex_file(glsl!("render/surfaces/spheres.vert"))
+            .file(glsl!("render/surfaces/ray.glsl"))
+            .file(glsl!("render/surfaces/spheres.frag")),
     ]
 }

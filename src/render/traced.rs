@@ -1,4 +1,5 @@
-//! Photons for a picture: traced in parts, those that may be seen uploaded, all kept where mirrors or glass need them.
+//! Photons for a picture: traced in parts, those that may be seen uploaded, all kept where mirrors or glass
+//! need them.
 
 use super::Progress;
 use super::nearest::PhotonGrid;
@@ -64,7 +65,7 @@ impl Traced {
             FirstBounce::Rays => trace_in_batches(scene, emission, |photons, followed| {
                 keep(photons, &mut points)?;
                 show(followed);
-                Ok::<_, crate::Error>(())
+                Ok::<_, crate::error::Error>(())
             })?,
             FirstBounce::Maps => {
                 let mut maps = BounceMaps::new(gl, scene)?;
@@ -88,8 +89,8 @@ impl Traced {
     }
 }
 
-/// All photons of an emission, leaving from some places on the lights, with what they meet first as bounce maps tell it
-/// (thesis 2.6.1); for [`trace_from_hits`].
+/// All photons of an emission, leaving from some places on the lights, with what they meet first as bounce
+/// maps tell it (thesis 2.6.1); for [`trace_from_hits`].
 ///
 /// # Errors
 /// [`Error::Shader`](crate::Error::Shader); [`Error::Gl`](crate::Error::Gl) if the driver fails.

@@ -6,8 +6,8 @@ use std::sync::Arc;
 use glam::Vec3;
 use toml::Spanned;
 
+use super::entries::{LightEntry, MaterialEntry, MeshEntry, SceneEntry, SurfaceEntry};
 use super::fields::MAX_COORDINATE;
-use super::format::{LightEntry, MaterialEntry, MeshEntry, SceneEntry, SurfaceEntry};
 use super::mesh;
 use super::source::{Files, Text};
 use super::{

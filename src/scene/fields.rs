@@ -6,7 +6,7 @@ use glam::{DVec3, Vec3};
 use toml::Spanned;
 
 use super::area;
-use super::format::Triple;
+use super::entries::Triple;
 use super::source::Text;
 use crate::error::Result;
 

@@ -6,8 +6,8 @@
 
 mod build;
 mod cast;
+mod entries;
 mod fields;
-mod format;
 mod geometry;
 mod intersect;
 mod light;

@@ -1,5 +1,6 @@
 //! `varikernel bench`: how fast each method is on this machine.
 
+mod cells;
 mod picture;
 mod rivals;
 mod table;

@@ -9,7 +9,8 @@ use varikernel::image::{check_writable, write_atomically};
 use varikernel::render::Progress;
 use varikernel_lab::bench::{PictureReport, PictureSuite};
 
-use super::table::{align_right, device_facts, new_table, three_digits};
+use super::cells::{align_right, new_table, three_digits};
+use super::table::device_facts;
 use super::{Args, targets};
 use crate::render::Bar;
 use crate::saving::{Autosave, Resume, how_to_go_on};

@@ -3,7 +3,7 @@
 use varikernel::settings::Method;
 use varikernel_lab::bench::{Case, Run, Stage};
 
-use super::table::{order, three_digits};
+use super::cells::{order, three_digits};
 
 /// What the mark means.
 pub(super) const LEGEND: &str = "\

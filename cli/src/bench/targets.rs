@@ -3,7 +3,7 @@
 use anyhow::Result;
 use varikernel_lab::bench::Target;
 
-use super::table::{align_right, new_table, three_digits};
+use super::cells::{align_right, new_table, three_digits};
 use crate::output;
 
 /// A table for each kind of target; nothing without any.

@@ -11,7 +11,8 @@ use varikernel::image::Difference;
 use varikernel::image::{
     self, Attribute, Format, Picture, ReadOptions, read_counts, write_counts, write_picture,
 };
-use varikernel::radius::planner::{self, Census, Choice};
+use varikernel::radius::Census;
+use varikernel::radius::planner::{self, Choice};
 use varikernel::settings::{Exactness, Settings, Storage};
 use varikernel::{
     Certificate, CountBounds, DensityMap, Error, Frame, Image, Mask, RadiusPipeline, reference,

@@ -5,7 +5,7 @@ use egui::{Button, Color32, ComboBox, DragValue, RichText, ScrollArea, Slider, T
 use varikernel::scene::Scene;
 use varikernel::settings::{Edges, Kernel, MAX_PICTURE_RADIUS, Method, Order};
 
-use super::choices::word;
+use super::choices::{LEAST_A_FRAME, MOST_A_FRAME, word};
 use super::state::{Beside, State, grouped};
 use super::views::View;
 
@@ -226,7 +226,8 @@ fn photons(ui: &mut Ui, state: &mut State) {
         ui.add(field.custom_formatter(|number, _| grouped(number as u64)));
     });
     row(ui, "a frame", |ui| {
-        let slider = Slider::new(&mut choices.photons_per_frame, LEAST..=MOST).logarithmic(true);
+        let slider =
+            Slider::new(&mut choices.photons_per_frame, LEAST_A_FRAME..=MOST_A_FRAME).logarithmic(true);
         ui.add_enabled(!choices.adapt, slider);
     });
     row(ui, "adapt", |ui| {
@@ -234,10 +235,6 @@ fn photons(ui: &mut Ui, state: &mut State) {
         ui.add(DragValue::new(&mut choices.frame_milliseconds).range(16..=2000).suffix(" ms"));
     });
 }
-
-/// The least and the most photons of a frame.
-const LEAST: u32 = 500;
-pub(super) const MOST: u32 = 1_000_000;
 
 fn files(ui: &mut Ui, state: &mut State) {
     heading(ui, "Save");

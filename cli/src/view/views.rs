@@ -59,7 +59,7 @@ impl View {
         }
     }
 
-    /// Its number in `view/show.frag`.
+    /// Its number in `glsl/show.frag`.
     pub(super) fn number(self) -> i32 {
         match self {
             Self::Picture | Self::Indirect | Self::Direct => 0,
@@ -137,7 +137,7 @@ pub(super) fn round_up(value: f32) -> f32 {
         .unwrap_or(value)
 }
 
-/// Where a value lies on a legend's bar, from 0 to 1; as in `view/show.frag`.
+/// Where a value lies on a legend's bar, from 0 to 1; as in `glsl/show.frag`.
 pub(super) fn place(value: f32, [low, high]: [f32; 2]) -> f32 {
     ((value.clamp(low, high) + 1.0) / (low + 1.0)).ln() / ((high + 1.0) / (low + 1.0)).ln()
 }

@@ -4,10 +4,7 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use super::rival;
-use super::settings::{BenchSettings, MapInfo};
-use super::situation::Situation;
-use crate::rivals::Rival;
+use super::settings::MapInfo;
 use varikernel::measure::Unit;
 use varikernel::settings::{Edges, Method, Order, SatBuild, SatSamples, Search, Settings, Storage};
 
@@ -54,8 +51,9 @@ pub struct Case {
     pub stage: Stage,
     /// The method and, where it counts, how its structure is built: `brute-force`, `naive-mipmap`,
     /// `averaged-mipmap`, `pyramid`, `sat` (search), `sat-doubling-4` or `sat-scan` (build and frame),
-    /// `copy`, `probe`; [`AUTO`]; or the name of a [`Rival`] or a [`Situation`]. A table that is kept in
-    /// another number than the run's base has its name as well: `sat-scan-u16`.
+    /// `copy`, `probe`; [`AUTO`]; or the name of a [`Rival`](crate::rivals::Rival) or a
+    /// [`Situation`](super::Situation). A table that is kept in another number than the run's base says so:
+    /// `sat-scan-u16`.
     pub variant: String,
     /// The map's name.
     pub map: String,
@@ -155,71 +153,5 @@ impl fmt::Display for Case {
             write!(formatter, " n {n} MR {radius} edges {}", edges.name())?;
         }
         write!(formatter, ", {} {width} x {height}", self.map)
-    }
-}
-
-/// What a case runs.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Work {
-    Unit(Unit),
-    Pipeline(Settings),
-    /// The frame of what the planner makes of the settings.
-    Planned(Settings),
-    Situation(Situation, Settings),
-    Rival(Rival, Search),
-}
-
-/// Every case of a map, units first and rivals last. A brute-force search is its whole frame, so only the
-/// frame is a case.
-pub(super) fn cases(settings: &BenchSettings, map: &MapInfo) -> Vec<(Case, Work)> {
-    if let Some(suite) = &settings.suite {
-        return suite.cases(settings, map);
-    }
-    let mut cases: Vec<(Case, Work)> =
-        [Unit::Copy, Unit::Probe].map(|unit| (Case::unit(unit, map), Work::Unit(unit))).into();
-    for stage in [Stage::Build, Stage::Search, Stage::Frame] {
-        for pipeline in settings.pipelines() {
-            if pipeline.method == Method::BruteForce && stage != Stage::Frame {
-                continue;
-            }
-            let case = Case::of(stage, &pipeline, settings.base.storage, map);
-            // The same build under another question, or the same search in a table built otherwise.
-            if !cases.iter().any(|(known, _)| *known == case) {
-                cases.push((case, Work::Pipeline(pipeline)));
-            }
-        }
-    }
-    cases.extend(rival::cases(settings, map));
-    cases
-}
-
-#[cfg(test)]
-mod tests {
-    use std::time::Duration;
-
-    use super::*;
-    use crate::bench::Protocol;
-
-    #[test]
-    fn each_case_is_there_once() {
-        let map = MapInfo { name: "m".to_owned(), size: [4, 4], origin: String::new() };
-        let mut settings = BenchSettings::new(Protocol::within(Duration::from_secs(1)));
-        let count = |settings: &BenchSettings, stage| {
-            cases(settings, &map).iter().filter(|(case, _)| case.stage == stage).count()
-        };
-        // Pyramid and three tables are built; pyramid and table are searched; brute force is a frame as well.
-        // Two orders, and a third for the table.
-        assert_eq!([Stage::Build, Stage::Search, Stage::Frame].map(|s| count(&settings, s)), [4, 5, 13]);
-        settings.edges = vec![Edges::Zero, Edges::Scale];
-        assert_eq!([Stage::Build, Stage::Search, Stage::Frame].map(|s| count(&settings, s)), [4, 10, 26]);
-        // Tables in other numbers, but no scan in f32: two more builds, three more searches, six more frames.
-        let usual = settings.clone();
-        settings.edges = vec![Edges::Zero];
-        settings.storages = vec![Storage::U32, Storage::F32];
-        assert_eq!([Stage::Build, Stage::Search, Stage::Frame].map(|s| count(&settings, s)), [6, 8, 19]);
-        settings = usual;
-        // The naive mipmap has one search of its own.
-        settings.methods = vec![Method::NaiveMipmap];
-        assert_eq!([Stage::Build, Stage::Search, Stage::Frame].map(|s| count(&settings, s)), [1, 2, 2]);
     }
 }

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use super::case::Case;
 use super::report::{Report, Run};
-use crate::Statistics;
+use crate::statistics::Statistics;
 use varikernel::error::{Error, Result};
 use varikernel::image::write_atomically;
 use varikernel::settings::{Edges, Method, Order};

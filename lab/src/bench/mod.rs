@@ -15,6 +15,7 @@
 //!
 //! [Rivals](super::rivals) on the processor are cases like the others, at the stage of a whole frame.
 
+mod all_cases;
 mod case;
 mod compare;
 mod fast;
@@ -26,15 +27,17 @@ mod runner;
 mod scene;
 mod settings;
 mod situation;
+mod suite;
 mod target;
+mod work;
 mod workbench;
 
 pub use case::{AUTO, Case, Stage};
 pub use compare::{ComparedRun, Comparison, Verdict, compare};
-pub use fast::FastSuite;
 pub use picture::{PictureReport, PictureRow, PictureSuite};
 pub use report::{Device, LeftOut, Report, Run};
 pub use runner::{Progress, empty_report, run};
 pub use settings::{BenchSettings, MapInfo, MapSource, Protocol};
 pub use situation::Situation;
+pub use suite::FastSuite;
 pub use target::{Side, Target};

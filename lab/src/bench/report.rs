@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::case::{Case, Stage};
 use super::settings::{BenchSettings, MapInfo};
 use super::target::Target;
-use crate::Statistics;
+use crate::statistics::Statistics;
 use varikernel::error::{Error, Result};
 use varikernel::gl::{DeviceInfo, Sample};
 use varikernel::settings::Method;
@@ -199,11 +199,6 @@ impl Report {
         });
         runs.sort_by(|a, b| a.statistics.median_ms.total_cmp(&b.statistics.median_ms));
         runs
-    }
-
-    /// Judges the suite's targets anew, if a suite was run.
-    pub fn update_targets(&mut self) {
-        self.targets = self.settings.suite.as_ref().map_or_else(Vec::new, |suite| suite.targets(self));
     }
 
     /// Recomputes each run's time in copies.

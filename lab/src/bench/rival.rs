@@ -4,8 +4,9 @@ use std::time::{Duration, Instant};
 
 use glam::UVec2;
 
-use super::case::{Case, Stage, Work};
+use super::case::{Case, Stage};
 use super::settings::{BenchSettings, MapInfo};
+use super::work::Work;
 use crate::rivals::{Contender, Rival};
 use varikernel::error::Result;
 use varikernel::gl::Sample;

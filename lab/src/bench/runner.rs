@@ -2,10 +2,12 @@
 
 use std::time::{Duration, Instant};
 
-use super::case::{self, Case, Work};
+use super::all_cases::cases;
+use super::case::Case;
 use super::fast;
 use super::report::{Device, LeftOut, Report, Run};
 use super::settings::{BenchSettings, MapSource};
+use super::work::Work;
 use super::workbench::Workbench;
 use crate::fingerprint::fingerprint;
 use varikernel::error::{Error, Result};
@@ -49,15 +51,14 @@ pub fn run(
     let mut report = earlier.unwrap_or_else(|| empty_report(gl, settings, maps));
     report.settings.protocol = settings.protocol;
     report.left_out.clear();
-    let sets: usize =
-        maps.iter().map(|map| case::cases(settings, &map.info).len() * settings.protocol.sets).sum();
+    let sets: usize = maps.iter().map(|map| cases(settings, &map.info).len() * settings.protocol.sets).sum();
     let mut runner =
         Runner { gl, settings, report, timer: Timer::new(gl)?, start, budget, sets, sets_done: 0, observe };
     for (index, map) in maps.iter().enumerate() {
         // A map's share grows with its cases and its side: a sample's time grows with the map's pixels, and
         // small maps need no more samples than large ones.
         let weight = |map: &MapSource| {
-            let cases = u32::try_from(case::cases(settings, &map.info).len()).unwrap_or(u32::MAX);
+            let cases = u32::try_from(cases(settings, &map.info).len()).unwrap_or(u32::MAX);
             f64::from(cases) * map.size().as_dvec2().element_product().sqrt()
         };
         let share = weight(map) / maps[index..].iter().map(weight).sum::<f64>();
@@ -117,7 +118,7 @@ struct Turn {
 impl Runner<'_> {
     /// Goes over all cases of a map, set by set; `deadline` counts from the start of the run.
     fn time_map(&mut self, map: &MapSource, deadline: Duration) -> Result<()> {
-        let turns = case::cases(self.settings, &map.info).into_iter();
+        let turns = cases(self.settings, &map.info).into_iter();
         let mut turns: Vec<Turn> =
             turns.map(|(case, work)| Turn { case, work, credit: 0.0, cost: 0.0, left_out: false }).collect();
         if self.start.elapsed() >= self.budget {

@@ -6,7 +6,7 @@ use std::time::Duration;
 use glam::UVec2;
 use serde::{Deserialize, Serialize};
 
-use super::fast::FastSuite;
+use super::suite::FastSuite;
 use crate::rivals::Rival;
 use varikernel::image::Image;
 use varikernel::settings::{Edges, Method, Order, SatBuild, SatSamples, Search, Settings, Storage};
@@ -194,7 +194,7 @@ impl MapSource {
     /// A map that is there already.
     #[must_use]
     pub fn given(name: impl Into<String>, counts: Image<u32>) -> Self {
-        let origin = format!("{} photons", crate::total_photons(&counts));
+        let origin = format!("{} photons", crate::summary::total_photons(&counts));
         let info = MapInfo { name: name.into(), size: counts.size().to_array(), origin };
         Self::new(info, move || counts.clone())
     }

@@ -2,11 +2,12 @@
 
 use std::time::{Duration, Instant};
 
-use super::case::{Stage, Work};
+use super::case::Stage;
 use super::rival::{self, Rivals};
 use super::scene::Scene;
 use super::settings::{BenchSettings, MapSource};
 use super::situation::Situation;
+use super::work::Work;
 use varikernel::error::{Error, Result};
 use varikernel::gl::{Gl, Sample, Timer};
 use varikernel::image::Difference;
@@ -14,8 +15,9 @@ use varikernel::image::Image;
 use varikernel::maps::CountBounds;
 use varikernel::maps::DensityMap;
 use varikernel::measure::{Unit, UnitPass};
+use varikernel::radius::Census;
 use varikernel::radius::RadiusPipeline;
-use varikernel::radius::planner::{self, Census, Choice};
+use varikernel::radius::planner::{self, Choice};
 use varikernel::reference;
 use varikernel::settings::{Order, Search, Settings, Storage};
 

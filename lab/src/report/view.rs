@@ -3,8 +3,9 @@
 use std::fmt::Write as _;
 
 use super::{Report, plot};
-use crate::thesis::claims::{Group, Judged, Verdict, verdict_counts};
+use crate::thesis::claims::{Group, Judged, verdict_counts};
 use crate::thesis::density::{self, Inference};
+use crate::thesis::judgement::Verdict;
 use crate::thesis::listings::{FaultRow, FloatRow};
 use crate::thesis::quantity::{Card, Measurements, Quantity, Timing};
 use crate::thesis::tables::{self, Table};

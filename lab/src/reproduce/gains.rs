@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use crate::Statistics;
+use crate::statistics::Statistics;
 use crate::thesis::claims::usual_search;
 use crate::thesis::evidence::Gain;
 use varikernel::error::Result;

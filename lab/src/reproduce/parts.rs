@@ -3,8 +3,8 @@
 use glam::UVec2;
 
 use super::RunFile;
-use crate::RadiusSummary;
 use crate::bench::{BenchSettings, Case, MapInfo, MapSource, Protocol, Report, Run, Stage};
+use crate::summary::RadiusSummary;
 use crate::synth::{self, Kind};
 use crate::thesis::density::{self, SEARCH};
 use crate::thesis::evidence::OrderPoint;

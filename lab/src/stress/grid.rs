@@ -7,7 +7,7 @@ use super::level::{Level, levels, question};
 use super::number::Number;
 use super::row::{Decision, Row, Verdict};
 use crate::rivals::{Cores, Scanline};
-use crate::total_photons;
+use crate::summary::total_photons;
 use varikernel::error::{Error, Result};
 use varikernel::gl::{Gl, TextureFormat};
 use varikernel::image::Difference;

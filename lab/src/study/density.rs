@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::shape::{Shape, sample};
-use crate::Confidence;
+use crate::confidence::Confidence;
 use crate::rivals::{Cores, Scanline};
 use varikernel::image::Image;
 use varikernel::reference::{Inside, Table};

@@ -9,7 +9,7 @@ use super::density::{DensityRow, Width};
 use super::pictures::{PictureRow, PictureStudy};
 use super::radii::RadiusRow;
 use super::{Study, Summary};
-use crate::PictureError;
+use crate::picture::PictureError;
 use varikernel::error::{Error, Result};
 use varikernel::image::write_atomically;
 

@@ -3,7 +3,7 @@
 use super::density::{DensityRow, Width};
 use super::pictures::{EqualPhotons, EqualTime, Metric, Winner};
 use super::shape::Shape;
-use crate::{Confidence, RatioInterval};
+use crate::confidence::{Confidence, RatioInterval};
 use varikernel::settings::PictureSettings;
 
 /// A measure, its name, and its place among the errors of a seed.

@@ -3,11 +3,11 @@
 //! The statements are `assets/thesis/claims.csv`, in our words; [`judge`] checks each by the [`Evidence`]. A
 //! claim without evidence is [`Verdict::CannotBeTested`] with the reason, never left out.
 
-use std::fmt;
 use std::io::Write;
 
 use super::evidence::Evidence;
-use super::{density, judge_counted, judge_printed, judge_timed};
+use super::judgement::{Judgement, Verdict};
+use super::{density, judge_counted, judge_future, judge_printed, judge_timed};
 use varikernel::settings::Search;
 
 /// What kind of statement it is, which is also what it is judged by.
@@ -41,71 +41,6 @@ pub struct Claim {
     pub thesis: String,
 }
 
-/// The verdict on a claim.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Verdict {
-    /// It holds in everything that was tested.
-    Confirmed,
-    /// It does not hold.
-    Refuted,
-    /// It holds in the part that the note names, and not in the rest.
-    HoldsHereOnly,
-    /// It was not tested; the note says why.
-    CannotBeTested,
-}
-
-impl Verdict {
-    /// All of them.
-    pub const ALL: [Self; 4] = [Self::Confirmed, Self::HoldsHereOnly, Self::Refuted, Self::CannotBeTested];
-}
-
-impl fmt::Display for Verdict {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str(match self {
-            Self::Confirmed => "confirmed",
-            Self::Refuted => "refuted",
-            Self::HoldsHereOnly => "holds here only",
-            Self::CannotBeTested => "cannot be tested",
-        })
-    }
-}
-
-/// Our answer to a claim.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Judgement {
-    /// The verdict.
-    pub verdict: Verdict,
-    /// Our figure; empty if there is none.
-    pub ours: String,
-    /// Conditions, reasons, where it holds.
-    pub note: String,
-}
-
-impl Judgement {
-    pub(super) fn new(verdict: Verdict, ours: impl Into<String>, note: impl Into<String>) -> Self {
-        Self { verdict, ours: ours.into(), note: note.into() }
-    }
-
-    pub(super) fn confirmed_if(holds: bool, ours: impl Into<String>, note: impl Into<String>) -> Self {
-        Self::new(if holds { Verdict::Confirmed } else { Verdict::Refuted }, ours, note)
-    }
-
-    /// By how many of the tested cases hold.
-    pub(super) fn by_cases(cases: &[bool], ours: impl Into<String>, note: impl Into<String>) -> Self {
-        let verdict = match cases.iter().filter(|&&holds| holds).count() {
-            _ if cases.is_empty() => Verdict::CannotBeTested,
-            0 => Verdict::Refuted,
-            held if held == cases.len() => Verdict::Confirmed,
-            _ => Verdict::HoldsHereOnly,
-        };
-        Self::new(verdict, ours, note)
-    }
-
-    pub(super) fn untested(why: impl Into<String>) -> Self {
-        Self::new(Verdict::CannotBeTested, "", why)
-    }
-}
-
 /// A claim with its answer.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Judged {
@@ -137,7 +72,7 @@ pub fn judge(claim: &Claim, evidence: &Evidence) -> Judgement {
     let id = claim.id.as_str();
     let judgement = match claim.group {
         Group::Timed => judge_timed::timed(id, evidence),
-        Group::Future => judge_timed::future(id, evidence),
+        Group::Future => judge_future::future(id, evidence),
         Group::Counted => judge_counted::counted(id, evidence),
         Group::Listing => judge_counted::listing(id, evidence),
         Group::Printed => judge_printed::printed(id),

@@ -37,7 +37,7 @@ use glam::UVec2;
 
 use super::quantity::{Card, Quantity};
 use super::tables::printed_series;
-use crate::RadiusSummary;
+use crate::summary::RadiusSummary;
 use crate::synth::{self, Kind};
 use varikernel::image::Image;
 use varikernel::reference;

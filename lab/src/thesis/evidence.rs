@@ -86,6 +86,11 @@ pub struct Evidence {
 const FLOAT_FACTORS: [u32; 5] = [1, 5, 9, 65, 1025];
 
 impl Evidence {
+    /// What answers a claim by its name, if that was timed.
+    pub(super) fn gain(&self, id: &str) -> Option<&Gain> {
+        self.gains.iter().find(|gain| gain.id == id)
+    }
+
     /// All that needs neither clock nor OpenGL, on `density`.
     ///
     /// # Errors

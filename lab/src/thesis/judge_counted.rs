@@ -1,8 +1,8 @@
 //! Claims that counting and comparing radii decide.
 
-use super::claims::{Judgement, Verdict};
 use super::counted::{self, PyramidCost};
 use super::evidence::{Evidence, LargerSmaller};
+use super::judgement::{Judgement, Verdict};
 use super::{density, example, listings};
 use varikernel::image::Difference;
 use varikernel::settings::Split;

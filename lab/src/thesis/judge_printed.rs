@@ -1,7 +1,7 @@
 //! Claims that the thesis's own numbers decide: its inconsistencies.
 
-use super::claims::{Judgement, Verdict};
 use super::density;
+use super::judgement::{Judgement, Verdict};
 use super::quantity::{Card, Quantity};
 use super::tables::printed_series;
 use Quantity::{BruteForce, PyramidFrame, SatBuild, SatFrame, SatSearch};

@@ -2,15 +2,15 @@
 //!
 //! Each is judged at every size that was timed; one that holds at some only says at which.
 
-use super::claims::{Judgement, Verdict};
 use super::density::line;
-use super::evidence::{Evidence, Gain, OrderPoint};
+use super::evidence::{Evidence, OrderPoint};
+use super::judgement::{Judgement, Verdict};
 use super::quantity::{Measurements, Quantity};
 use Quantity::{BruteForce, PyramidBuild, PyramidFrame, SatBuild, SatFrame, SatSearch, SatSearchByMaxRadius};
 use varikernel::settings::{Order, SatSamples};
 
 /// Medians closer than this, relative, count as the same.
-const SAME: f64 = 0.05;
+pub(super) const SAME: f64 = 0.05;
 /// "Two orders of magnitude" for a ratio: nearer to 100 than to 10 or 1000.
 const TWO_ORDERS: std::ops::RangeInclusive<f64> = 31.6..=316.0;
 /// The slowest interactive frame, in milliseconds.
@@ -34,7 +34,7 @@ pub(super) fn timed(id: &str, evidence: &Evidence) -> Option<Judgement> {
         ),
         "pyramid-build-flat" => {
             let series = all.series(PyramidBuild);
-            growth(&series).map_or_else(untimed, |(span, growth, _)| {
+            growth(&series).map_or_else(Judgement::untimed, |(span, growth, _)| {
                 let pixels = (f64::from(span.1) / f64::from(span.0)).powi(2);
                 let note = format!("Flat is taken as at most 2 while the pixels grow {pixels:.0} times.");
                 Judgement::confirmed_if(growth <= 2.0, text(span, growth), note)
@@ -44,7 +44,7 @@ pub(super) fn timed(id: &str, evidence: &Evidence) -> Option<Judgement> {
             // The thesis excepts the step from 64 to 128 as well.
             let series: Vec<_> =
                 all.series(BruteForce).into_iter().filter(|&(size, _)| size >= 128).collect();
-            growth(&series).map_or_else(untimed, |(span, growth, exponent)| {
+            growth(&series).map_or_else(Judgement::untimed, |(span, growth, exponent)| {
                 Judgement::confirmed_if(
                     (0.9..=1.1).contains(&exponent),
                     format!("exponent {exponent:.2}; {}", text(span, growth)),
@@ -76,8 +76,8 @@ pub(super) fn timed(id: &str, evidence: &Evidence) -> Option<Judgement> {
         "search-crossing" => crossing(&evidence.orders),
         "binary-log" => logarithmic(all),
         "parts-and-whole" => parts(all),
-        "scale-cost" => match gain(evidence, id) {
-            None => untimed(),
+        "scale-cost" => match evidence.gain(id) {
+            None => Judgement::untimed(),
             Some(of) => {
                 let cost = of.after_ms / of.before_ms - 1.0;
                 Judgement::confirmed_if(
@@ -91,49 +91,6 @@ pub(super) fn timed(id: &str, evidence: &Evidence) -> Option<Judgement> {
     })
 }
 
-/// The answer to a claim of [`Group::Future`](super::claims::Group).
-pub(super) fn future(id: &str, evidence: &Evidence) -> Option<Judgement> {
-    let not_tried = match id {
-        "future-brute-gather" => "textureGather came with OpenGL 4.0; this is 3.3",
-        "future-pyramid-stack" => "linked lists in a shader need OpenGL 4.2; this is 3.3",
-        "future-sat-partial" => "a change in one corner touches the whole table; it needs another structure",
-        "future-densities" => return Some(densities(&evidence.orders)),
-        "future-brute-reuse"
-        | "future-brute-several"
-        | "future-pyramid-bits"
-        | "future-pyramid-floats"
-        | "future-pyramid-several"
-        | "future-pyramid-strips"
-        | "future-sat-samples"
-        | "future-sat-scissor"
-        | "future-sat-select" => "not timed in this run",
-        _ => return None,
-    };
-    let Some(Gain { before_ms, after_ms, wrong_pixels, what, .. }) = gain(evidence, id) else {
-        return Some(Judgement::untested(not_tried));
-    };
-    let factor = before_ms / after_ms;
-    let ours = format!("{factor:.2} times as fast ({before_ms:.3} to {after_ms:.3} ms)");
-    Some(if *wrong_pixels > 0 {
-        Judgement::new(Verdict::Refuted, ours, format!("{what}; not a gain: {wrong_pixels} pixels are wrong"))
-    } else {
-        let note = if (factor - 1.0).abs() <= SAME {
-            format!("{what}; no difference within 5 %")
-        } else {
-            what.clone()
-        };
-        Judgement::confirmed_if(factor > 1.0 + SAME, ours, note)
-    })
-}
-
-fn untimed() -> Judgement {
-    Judgement::untested("not timed in this run")
-}
-
-fn gain<'a>(evidence: &'a Evidence, id: &str) -> Option<&'a Gain> {
-    evidence.gains.iter().find(|gain| gain.id == id)
-}
-
 /// `upper` over `lower` in each row that has both.
 fn ratios(all: &Measurements, upper: Quantity, lower: Quantity) -> Vec<(u32, f64)> {
     all.series(upper).into_iter().filter_map(|(row, ms)| Some((row, ms / all.ms(lower, row)?))).collect()
@@ -141,7 +98,7 @@ fn ratios(all: &Measurements, upper: Quantity, lower: Quantity) -> Vec<(u32, f64
 
 fn by_ratio(ratios: &[(u32, f64)], holds: impl Fn(f64) -> bool, what: &str) -> Judgement {
     if ratios.is_empty() {
-        return untimed();
+        return Judgement::untimed();
     }
     let held: Vec<bool> = ratios.iter().map(|&(_, ratio)| holds(ratio)).collect();
     Judgement::by_cases(&held, format!("{what}: {}", rows(ratios, "")), where_it_holds(ratios, &held))
@@ -149,7 +106,7 @@ fn by_ratio(ratios: &[(u32, f64)], holds: impl Fn(f64) -> bool, what: &str) -> J
 
 fn by_values(series: &[(u32, f64)], holds: impl Fn(f64) -> bool, note: &str) -> Judgement {
     if series.is_empty() {
-        return untimed();
+        return Judgement::untimed();
     }
     let held: Vec<bool> = series.iter().map(|&(_, ms)| holds(ms)).collect();
     Judgement::by_cases(&held, rows(series, " ms"), note)
@@ -170,7 +127,7 @@ fn rows(values: &[(u32, f64)], unit: &str) -> String {
 }
 
 /// Three significant digits or so.
-fn short(value: f64) -> String {
+pub(super) fn short(value: f64) -> String {
     match value {
         value if value >= 100.0 => format!("{value:.0}"),
         value if value >= 10.0 => format!("{value:.1}"),
@@ -198,7 +155,7 @@ fn fastest(all: &Measurements) -> Judgement {
     let pyramid = ratios(all, PyramidFrame(FORWARD), SAT_FOUR);
     let both: Vec<(u32, f64)> = brute.iter().chain(&pyramid).copied().collect();
     if brute.is_empty() || pyramid.is_empty() {
-        return untimed();
+        return Judgement::untimed();
     }
     let held: Vec<bool> =
         both.iter().flat_map(|(_, ratio)| [*ratio > 1.0 + SAME, TWO_ORDERS.contains(ratio)]).collect();
@@ -224,7 +181,7 @@ fn slower_growth(all: &Measurements) -> Judgement {
             format!("{}; brute force ×{}", text(span, of_pyramid), short(of_brute)),
             "Forward, over the sizes that both were timed at.",
         ),
-        _ => untimed(),
+        _ => Judgement::untimed(),
     }
 }
 
@@ -233,7 +190,7 @@ fn crossing(orders: &[OrderPoint]) -> Judgement {
     let mut points = orders.to_vec();
     points.sort_by(|a, b| a.mean_radius.total_cmp(&b.mean_radius));
     let (Some(first), Some(last)) = (points.first(), points.last()) else {
-        return untimed();
+        return Judgement::untimed();
     };
     let ahead = |point: &OrderPoint| point.binary_ms / point.forward_ms - 1.0;
     let span = format!("from mean radius {:.1} to {:.1}", first.mean_radius, last.mean_radius);
@@ -248,21 +205,6 @@ fn crossing(orders: &[OrderPoint]) -> Judgement {
     Judgement::new(Verdict::Refuted, format!("{winner} wins at every density"), span)
 }
 
-fn densities(orders: &[OrderPoint]) -> Judgement {
-    if orders.is_empty() {
-        return untimed();
-    }
-    let ours = orders
-        .iter()
-        .map(|at| format!("{:.1}: {}", at.mean_radius, short(at.forward_ms / at.binary_ms)))
-        .collect::<Vec<_>>();
-    Judgement::new(
-        Verdict::Confirmed,
-        format!("forward over binary by mean radius: {}", ours.join(", ")),
-        "See where the orders cross.",
-    )
-}
-
 fn logarithmic(all: &Measurements) -> Judgement {
     let points: Vec<(f64, f64)> = all
         .series(SatSearchByMaxRadius)
@@ -270,7 +212,7 @@ fn logarithmic(all: &Measurements) -> Judgement {
         .map(|(max_radius, ms)| (f64::from(max_radius).log2(), ms))
         .collect();
     if points.len() < 3 {
-        return untimed();
+        return Judgement::untimed();
     }
     let (slope, intercept) = line(&points);
     let off = points.iter().map(|(x, ms)| (ms - intercept - slope * x).abs() / ms).fold(0.0, f64::max);
@@ -295,7 +237,7 @@ fn parts(all: &Measurements) -> Judgement {
         }
     }
     if shares.is_empty() {
-        return untimed();
+        return Judgement::untimed();
     }
     let held: Vec<bool> = shares.iter().map(|share| *share > 1.0 + SAME).collect();
     let low = shares.iter().copied().fold(f64::INFINITY, f64::min);
@@ -360,18 +302,5 @@ mod tests {
         assert_eq!(answer.verdict, Verdict::Confirmed);
         assert!(answer.ours.ends_with(" 6.0"), "{}", answer.ours);
         assert_eq!(crossing(&[point(1.0, 1.0, 2.0), point(2.0, 1.0, 2.0)]).verdict, Verdict::Refuted);
-    }
-
-    #[test]
-    fn a_change_that_spoils_pixels_is_no_gain() {
-        let of = |after_ms, wrong_pixels| {
-            let id = "future-sat-select".to_owned();
-            let gain =
-                Gain { id: id.clone(), what: "512".to_owned(), before_ms: 2.0, after_ms, wrong_pixels };
-            future(&id, &Evidence { gains: vec![gain], ..Evidence::default() }).unwrap().verdict
-        };
-        assert_eq!(of(1.0, 0), Verdict::Confirmed);
-        assert_eq!(of(1.0, 1), Verdict::Refuted);
-        assert_eq!(of(1.99, 0), Verdict::Refuted);
     }
 }

@@ -122,7 +122,7 @@ pub fn float_rows(density: &Image<u32>, search: Search, factors: &[u32]) -> Resu
         let search = Search { min_photons: search.min_photons.saturating_mul(factor), ..search };
         let radii = radius_by_float_table(&map, search);
         let difference = Difference::between(&right.radius, &radii)?;
-        Ok(FloatRow { factor, total: crate::total_photons(&map), difference })
+        Ok(FloatRow { factor, total: crate::summary::total_photons(&map), difference })
     });
     rows.collect()
 }

@@ -5,10 +5,10 @@
 
 mod canvas;
 mod libraries;
-mod picture;
+mod own_texture;
 
 pub use canvas::{Canvas, Input, Uniform};
-pub use picture::Picture;
+pub use own_texture::Picture;
 
 use std::ffi::{CStr, c_void};
 use std::num::NonZeroU32;

@@ -3,10 +3,10 @@
 use glam::UVec2;
 use glow::HasContext as _;
 
-use super::format::format_name;
-use super::{Texture, TextureFormat};
+use super::Texture;
 use crate::error::{Error, Result};
 use crate::gl::errors::error_name;
+use crate::gl::texture_format::{TextureFormat, format_name};
 use crate::gl::{Gl, TextureShape};
 
 /// Where each value of a texel belongs.

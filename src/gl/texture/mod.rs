@@ -1,15 +1,12 @@
 //! Two-dimensional textures, plain or in layers: ours, or borrowed from the host.
 
 mod borrow;
-mod format;
-
-pub use format::TextureFormat;
 
 use bytemuck::Pod;
 use glam::UVec2;
 use glow::HasContext as _;
 
-use super::{Gl, TextureShape};
+use super::{Gl, TextureFormat, TextureShape};
 use crate::error::{Error, Result};
 use crate::image::Image;
 

@@ -49,5 +49,5 @@ fn reduce(program: &Program, mask: &Texture, target: &mut Target) -> Result<()> 
 }
 
 pub(super) fn source() -> ShaderSource {
-    ShaderSource::new(MASK).targets([TextureFormat::R8Uint]).file(glsl!("mask/any.frag"))
+    ShaderSource::new(MASK).targets([TextureFormat::R8Uint]).file(glsl!("radius/search/mask_tiles.frag"))
 }

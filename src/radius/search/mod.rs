@@ -170,7 +170,7 @@ fn search_source(density: TextureFormat, settings: &Settings, continued: Continu
     };
     let source = source.file(glsl!("common/mask.glsl")).file(glsl!("common/enough.glsl"));
     tables::counter(source, density, settings).file(match settings.method {
-        Method::NaiveMipmap => glsl!("naive_mipmap.frag"),
-        _ => glsl!("radius.frag"),
+        Method::NaiveMipmap => glsl!("radius/search/naive_mipmap.frag"),
+        _ => glsl!("radius/search/stepwise.frag"),
     })
 }

@@ -26,7 +26,7 @@ pub(super) fn source(settings: &Settings) -> ShaderSource {
         .define_if(settings.limited_mask, "LIMITED_MASK")
         .define_if(settings.masked, "MASKED")
         .file(glsl!("common/mask.glsl"))
-        .file(glsl!("unreached.frag"))
+        .file(glsl!("radius/search/unreached.frag"))
 }
 
 /// Sets every pixel.

@@ -119,5 +119,5 @@ pub(super) fn build_sources(density: TextureFormat, settings: &Settings) -> Vec<
 
 fn sum_source(settings: &Settings) -> ShaderSource {
     super::number(ShaderSource::new(SUM).targets([super::format(settings)]), settings)
-        .file(glsl!("build/summed_mipmap.frag"))
+        .file(glsl!("radius/tables/summed_mipmap.frag"))
 }

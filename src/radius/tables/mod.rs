@@ -1,6 +1,6 @@
 //! What a counter reads: one file per section of the thesis.
 //!
-//! Each answers "how many photons are in this box?" for `radius.frag`, except the naive mipmap, which does not
+//! Each answers "how many photons are in this box?" for a search, except the naive mipmap, which does not
 //! answer that question and has a search of its own.
 //!
 //! # As printed
@@ -199,5 +199,5 @@ pub(crate) fn density_access(
 /// The shader that copies a density map into level 0 of a structure.
 fn seed_source(label: &str, density: TextureFormat, settings: &Settings) -> ShaderSource {
     let source = ShaderSource::new(label).targets([format(settings)]);
-    density_access(source, density, settings).file(crate::gl::glsl!("build/seed.frag"))
+    density_access(source, density, settings).file(crate::gl::glsl!("radius/tables/seed.frag"))
 }

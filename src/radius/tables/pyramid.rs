@@ -60,5 +60,5 @@ pub(super) fn counter(source: ShaderSource, settings: &Settings) -> ShaderSource
         .define_if(settings.method == Method::AveragedMipmap, "AVERAGED")
         .define_if(settings.variation == Some(Variation::WholeStrips), "WHOLE_STRIPS")
         .define_if(settings.faults.forgotten_strip, "FAULT_FORGOTTEN_STRIP");
-    super::number(source, settings).file(glsl!("count/pyramid.glsl"))
+    super::number(source, settings).file(glsl!("radius/tables/pyramid/count.glsl"))
 }

@@ -60,7 +60,8 @@ impl ProgressiveDirect {
         }
     }
 
-    /// Radiance of lights, and of what they light; the fourth value is 1 where a pixel shows a diffuse surface, else 0.
+    /// Radiance of lights, and of what they light; the fourth value is 1 where a pixel shows a diffuse
+    /// surface, else 0.
     pub(super) fn image(&self) -> Image<[f32; 4]> {
         let mut image = Image::filled(self.size, [0.0; 4]);
         for &(pixel, radiance) in &self.lights {

@@ -1,8 +1,10 @@
-//! A picture that gets better step by step, for a window or a host: photons come a few at a time, and the camera may move.
+//! A picture that gets better step by step, for a window or a host: photons come a few at a time, and the
+//! camera may move.
 //!
-//! Each step traces some photons, counts them, searches radii for all photons so far, and draws the new ones with these; direct
-//! light gets some more shadow rays. So a step costs the same however long the picture has been getting better. With n as it
-//! is, kernels shrink as photons come: the picture sharpens, at a noise that n decides (see [`irradiance`](crate::light::irradiance)).
+//! Each step traces some photons, counts them, searches radii for all photons so far, and draws the new ones
+//! with these; direct light gets some more shadow rays. So a step costs the same however long the picture has
+//! been getting better. With n as it is, kernels shrink as photons come: the picture sharpens, at a noise
+//! that n decides (see [`irradiance`](crate::light::irradiance)).
 
 mod direct;
 mod inspection;
@@ -32,7 +34,8 @@ use direct::ProgressiveDirect;
 use inspection::Inspector;
 use through::ProgressiveThrough;
 
-/// A photon's power is multiplied with the number of photons of its step over this, so that steps of any number add up.
+/// A photon's power is multiplied with the number of photons of its step over this, so that steps of any
+/// number add up.
 const UNIT: f32 = 65_536.0;
 
 /// A scene, and a picture of it in the making.
@@ -98,8 +101,8 @@ impl Live {
         })
     }
 
-    /// Goes on with other settings: keeps what they do not change, and starts the rest anew. The number of photons and of shadow
-    /// rays of a step changes nothing that is there.
+    /// Goes on with other settings: keeps what they do not change, and starts the rest anew. The number of
+    /// photons and of shadow rays of a step changes nothing that is there.
     ///
     /// # Errors
     /// As [`new`](Self::new); everything stays as it was then.
@@ -135,8 +138,8 @@ impl Live {
         Ok(())
     }
 
-    /// Makes the picture better by [`LiveSettings::photons_per_step`] photons and [`LiveSettings::shadow_rays_per_step`] shadow
-    /// rays; the first step takes a shadow ray of every pixel.
+    /// Makes the picture better by [`LiveSettings::photons_per_step`] photons and
+    /// [`LiveSettings::shadow_rays_per_step`] shadow rays; the first step takes a shadow ray of every pixel.
     ///
     /// # Errors
     /// [`Error::Inexact`](crate::Error::Inexact) where a pixel has more photons than can be counted;
@@ -203,16 +206,18 @@ impl Live {
         self.steps
     }
 
-    /// How long the parts of the last step took the processor, in their order; [`StageTimes`](crate::gl::StageTimes) tells of
-    /// the passes on OpenGL.
+    /// How long the parts of the last step took the processor, in their order;
+    /// [`StageTimes`](crate::gl::StageTimes) tells of the passes on OpenGL.
     #[must_use]
     pub fn times(&self) -> &[(&'static str, Duration)] {
         &self.times
     }
 
-    /// The picture: radiance towards the camera, linear RGB, GL_RGBA32F; undefined before the first step, as the next ones.
+    /// The picture: radiance towards the camera, linear RGB, GL_RGBA32F; undefined before the first step, as
+    /// the next ones.
     ///
-    /// All textures have row 0 of the picture, its top, as their first row. Ask again after [`change`](Self::change).
+    /// All textures have row 0 of the picture, its top, as their first row. Ask again after
+    /// [`change`](Self::change).
     #[must_use]
     pub fn beauty(&self) -> glow::Texture {
         self.shade.beauty().name()
@@ -242,7 +247,8 @@ impl Live {
         self.pipeline.radii().map(crate::maps::RadiusMap::texture)
     }
 
-    /// 1 where MR ended the search with too few photons, GL_R8UI, if radii are variable and the settings ask for it.
+    /// 1 where MR ended the search with too few photons, GL_R8UI, if radii are variable and the settings ask
+    /// for it.
     #[must_use]
     pub fn limited(&self) -> Option<glow::Texture> {
         self.pipeline.radii().and_then(crate::maps::RadiusMap::limited_texture)
@@ -267,7 +273,8 @@ impl Live {
     /// What a pixel holds. The first time after a step, the maps are read back, which waits for the GPU.
     ///
     /// # Errors
-    /// [`Error::Setting`](crate::Error::Setting) outside of the picture; [`Error::Gl`](crate::Error::Gl) if the driver fails.
+    /// [`Error::Setting`](crate::Error::Setting) outside of the picture; [`Error::Gl`](crate::Error::Gl) if
+    /// the driver fails.
     pub fn inspect(&mut self, pixel: UVec2) -> Result<Inspection> {
         self.inspector.inspect(&self.scene, self.shown.surfaces.view(), &self.pipeline, pixel)
     }

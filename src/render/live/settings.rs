@@ -21,15 +21,16 @@ pub struct LiveSettings {
     pub bounces: u32,
     /// Photons that leave the lights in a step, at least as many as there are lights.
     pub photons_per_step: u32,
-    /// Places at which direct light is sampled in a step, each with one ray to each light; 0 for none after the first step.
+    /// Places at which direct light is sampled in a step, each with one ray to each light; 0 for none after
+    /// the first step.
     pub shadow_rays_per_step: u32,
     /// The same seed and the same steps give the same picture.
     pub seed: u64,
 }
 
 impl LiveSettings {
-    /// 512 x 512 pixels as the scene's camera sees it, radii as in [`IrradianceSettings::default`] with the plane of limited
-    /// pixels, 20,000 photons and 65,536 shadow rays a step.
+    /// 512 x 512 pixels as the scene's camera sees it, radii as in [`IrradianceSettings::default`] with the
+    /// plane of limited pixels, 20,000 photons and 65,536 shadow rays a step.
     #[must_use]
     pub fn new(scene: &Scene) -> Self {
         let mut irradiance = IrradianceSettings::default();

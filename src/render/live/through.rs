@@ -1,4 +1,5 @@
-//! Indirect light in mirrors and through glass that gets better: photons are gathered anew each time their number has doubled.
+//! Indirect light in mirrors and through glass that gets better: photons are gathered anew each time their
+//! number has doubled.
 
 use crate::image::Image;
 use crate::photon::PhotonPoint;

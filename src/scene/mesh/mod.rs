@@ -1,7 +1,7 @@
 //! Meshes by reference: OBJ and glTF 2.0.
 
 mod gltf;
-mod image;
+mod images;
 mod obj;
 mod smooth;
 

@@ -3,8 +3,7 @@
 use anyhow::{Result, bail};
 use varikernel::glam::Vec3;
 
-use super::{CameraChoice, Choices};
-use crate::view::panels::MOST;
+use super::{CameraChoice, Choices, MOST_A_FRAME};
 
 /// Coordinates whose squares are still finite.
 const FARTHEST: f32 = 1e18;
@@ -14,9 +13,9 @@ const LEAST_SINE: f32 = 1e-3;
 impl Choices {
     /// Refuses what neither a scene nor a map would refuse by itself, with the field's name.
     pub(super) fn check(&self) -> Result<()> {
-        if !(1..=MOST).contains(&self.photons_per_frame) {
+        if !(1..=MOST_A_FRAME).contains(&self.photons_per_frame) {
             let photons = self.photons_per_frame;
-            bail!("choices.photons_per_frame = {photons} is not possible: give 1 to {MOST}");
+            bail!("choices.photons_per_frame = {photons} is not possible: give 1 to {MOST_A_FRAME}");
         }
         self.camera.as_ref().map_or(Ok(()), CameraChoice::check)
     }
@@ -79,7 +78,7 @@ mod tests {
     #[test]
     fn numbers_out_of_range_are_refused() {
         choices().check().expect("good choices");
-        for photons_per_frame in [0, MOST + 1] {
+        for photons_per_frame in [0, MOST_A_FRAME + 1] {
             assert!(Choices { photons_per_frame, ..choices() }.check().is_err());
         }
     }

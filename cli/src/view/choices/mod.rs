@@ -16,6 +16,10 @@ use varikernel::view::Camera;
 
 use crate::output::quoted;
 
+/// The least and the most photons of a frame.
+pub(super) const LEAST_A_FRAME: u32 = 500;
+pub(super) const MOST_A_FRAME: u32 = 1_000_000;
+
 /// What is shown and how it is made.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

@@ -11,9 +11,8 @@ use varikernel::glam::UVec2;
 use varikernel::image::ToneMap;
 
 use super::camera::Orbit;
-use super::choices::{CameraChoice, Choices};
+use super::choices::{CameraChoice, Choices, MOST_A_FRAME};
 use super::engine::{Engine, Readout};
-use super::panels::MOST;
 use super::screen::{Screen, Snapshot};
 use super::times::Times;
 use super::views::View;
@@ -150,7 +149,7 @@ impl State {
         let photons = f64::from(self.choices.photons_per_frame) * factor;
         // A step of few percent is not worth a change.
         if (factor - 1.0).abs() > 0.05 {
-            self.choices.photons_per_frame = (photons as u32).clamp(LEAST_ADAPTED, MOST);
+            self.choices.photons_per_frame = (photons as u32).clamp(LEAST_ADAPTED, MOST_A_FRAME);
         }
     }
 

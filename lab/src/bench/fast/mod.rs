@@ -19,15 +19,14 @@ mod rows;
 mod targets;
 
 use glam::UVec2;
-use serde::{Deserialize, Serialize};
 
 use self::rows::{ORDERS, Rows};
-use super::case::{Case, Work};
-use super::report::Report;
+use super::case::Case;
 use super::rival;
 use super::settings::{BenchSettings, MapInfo, MapSource, Protocol};
 use super::situation::Situation;
-use super::target::Target;
+use super::suite::FastSuite;
+use super::work::Work;
 use crate::rivals::Rival;
 use crate::synth::{self, Kind};
 use varikernel::image::Image;
@@ -46,23 +45,6 @@ const SPARSE: &str = "uniform-sparse";
 const MOSTLY_EMPTY: &str = "mostly-empty";
 /// The seed of all maps.
 const SEED: u64 = 1;
-
-/// The suite for some sizes.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct FastSuite {
-    /// Columns and rows of the maps with which everything is timed.
-    pub sizes: Vec<[u32; 2]>,
-    /// Columns and rows of the maps with which only builds are.
-    pub build_sizes: Vec<[u32; 2]>,
-}
-
-impl Default for FastSuite {
-    /// Everything at 1024², builds from 64² to 2048².
-    fn default() -> Self {
-        let build_sizes = [64, 128, 256, 512, 1024, 2048].map(|side| [side, side]).into();
-        Self { sizes: vec![[1024, 1024]], build_sizes }
-    }
-}
 
 impl BenchSettings {
     /// The suite, without rivals.
@@ -119,11 +101,6 @@ impl FastSuite {
         }
         cases.extend(rivals(settings, map));
         cases
-    }
-
-    /// The targets of a run of this suite, judged.
-    pub(super) fn targets(&self, report: &Report) -> Vec<Target> {
-        targets::of(self, report)
     }
 }
 

@@ -1,8 +1,9 @@
 //! The rows of a map: what a case is called and what it runs, in one place for the run and for its targets.
 
-use crate::bench::case::{Case, Stage, Work};
+use crate::bench::case::{Case, Stage};
 use crate::bench::settings::MapInfo;
 use crate::bench::situation::Situation;
+use crate::bench::work::Work;
 use varikernel::measure::Unit;
 use varikernel::settings::{Edges, Order, SatBuild, SatSamples, Search, Settings};
 

@@ -4,11 +4,13 @@
 //! to find the best among: the best of the others might not be the best.
 
 use super::rows::Rows;
-use super::{CAUSTIC, FastSuite, MAX_RADII, MORE_RADII, MOSTLY_EMPTY, SITUATION_RADIUS, SPARSE};
-use crate::bench::case::{Case, Work};
+use super::{CAUSTIC, MAX_RADII, MORE_RADII, MOSTLY_EMPTY, SITUATION_RADIUS, SPARSE};
+use crate::bench::case::Case;
 use crate::bench::report::{Report, Run};
 use crate::bench::situation::Situation;
+use crate::bench::suite::FastSuite;
 use crate::bench::target::{Bound, Side, Target};
+use crate::bench::work::Work;
 use varikernel::measure::Unit;
 use varikernel::settings::{Edges, Order};
 
@@ -24,8 +26,15 @@ const PROBES: &str = "probe passes";
 const AS_FAST: &str = "times as fast";
 const AS_LONG: &str = "times as long";
 
+impl Report {
+    /// Judges the suite's targets anew, if a suite was run.
+    pub fn update_targets(&mut self) {
+        self.targets = self.settings.suite.as_ref().map_or_else(Vec::new, |suite| of(suite, self));
+    }
+}
+
 /// The targets by kind, then by map.
-pub(super) fn of<'a>(suite: &FastSuite, report: &'a Report) -> Vec<Target> {
+fn of<'a>(suite: &FastSuite, report: &'a Report) -> Vec<Target> {
     let judge = |map| Judge { report, rows: Rows { map, base: report.settings.base } };
     let maps: Vec<Judge<'_>> = report.maps.iter().map(judge).collect();
     let mut targets: Vec<Target> = maps.iter().flat_map(Judge::builds).collect();

@@ -27,7 +27,7 @@ use self::rows::{Rows, Work};
 use super::report::Device;
 use super::settings::MapInfo;
 use super::target::{Side, Target};
-use crate::Statistics;
+use crate::statistics::Statistics;
 use varikernel::error::Result;
 use varikernel::gl::{Gl, Sample, Timer};
 use varikernel::scene::Scene;

@@ -2,10 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::compare::distinct;
+use super::equal_photons::distinct;
 use super::metric::Sweep;
 use super::{Metric, PictureRow, Width, Winner};
-use crate::{Confidence, RatioInterval};
+use crate::confidence::{Confidence, RatioInterval};
 use varikernel::settings::Kernel;
 
 /// Budgets that are compared, evenly spaced in the logarithm, where both curves are defined.

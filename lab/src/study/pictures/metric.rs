@@ -3,7 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::{PictureRow, Width};
-use crate::{Confidence, PictureError};
+use crate::confidence::Confidence;
+use crate::picture::PictureError;
 
 /// One number of a [`PictureError`], so that less is better.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]

@@ -11,14 +11,14 @@
 //! The reference's own noise is in all errors, of variable and fixed radii alike, and draws their ratio
 //! towards 1.
 
-mod compare;
+mod equal_photons;
 mod equal_time;
 mod metric;
 mod row;
 mod run;
 mod studio;
 
-pub use compare::{Comparison, EqualPhotons, Winner, equal_photons};
+pub use equal_photons::{Comparison, EqualPhotons, Winner, equal_photons};
 pub use equal_time::{Budget, CurvePoint, EqualTime, equal_time};
 pub use metric::{Chosen, Metric};
 pub use row::{PictureRow, Width};

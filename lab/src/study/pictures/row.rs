@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::PictureError;
+use crate::picture::PictureError;
 use varikernel::settings::{Kernel, RadiusChoice};
 
 /// What decides the radii of a picture's kernels.

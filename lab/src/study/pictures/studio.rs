@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use super::{PictureRow, PictureStudy, Width};
-use crate::PictureError;
+use crate::picture::PictureError;
 use varikernel::error::Result;
 use varikernel::gl::Gl;
 use varikernel::image::Image;

@@ -1,11 +1,11 @@
 //! Run time against error of radius maps: every way to find them, on the same maps, against the exact answer.
 
-mod bench;
+mod timed_map;
 
 use glam::UVec2;
 use serde::{Deserialize, Serialize};
 
-use self::bench::{Bench, Machine};
+use self::timed_map::{Bench, Machine};
 use super::variant::{self, Variant, VariantName};
 use crate::bench::{MapInfo, MapSource};
 use crate::synth::Kind;

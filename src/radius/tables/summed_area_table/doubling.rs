@@ -120,5 +120,5 @@ fn doubling_source(settings: &Settings) -> ShaderSource {
         .targets([tables::format(settings)])
         .define("SAMPLES", settings.sat_samples.count())
         .define_if(settings.reaching_faults().sample_stride, "FAULT_SAMPLE_STRIDE");
-    tables::number(source, settings).file(glsl!("build/doubling.frag"))
+    tables::number(source, settings).file(glsl!("radius/tables/summed_area_table/doubling.frag"))
 }

@@ -196,7 +196,7 @@ pub(super) fn build_sources(density: TextureFormat, settings: &Settings) -> Vec<
 
 fn addition_source(settings: &Settings) -> ShaderSource {
     super::number(ShaderSource::new(ADDITION).targets([super::format(settings)]), settings)
-        .file(glsl!("build/add_tables.frag"))
+        .file(glsl!("radius/tables/summed_area_table/add_tables.frag"))
 }
 
 pub(super) fn counter(source: ShaderSource, settings: &Settings) -> ShaderSource {
@@ -207,10 +207,10 @@ pub(super) fn counter(source: ShaderSource, settings: &Settings) -> ShaderSource
         .define_if(faults.border_test, "FAULT_BORDER_TEST")
         .define_if(faults.corner_test, "FAULT_CORNER_TEST");
     super::number(source, settings).file(if faults.in_table_sampling() {
-        glsl!("count/summed_area_table_as_printed.glsl")
+        glsl!("radius/tables/summed_area_table/count_as_printed.glsl")
     } else if settings.variation == Some(Variation::UnconditionalFetches) {
-        glsl!("count/summed_area_table_unconditional_fetches.glsl")
+        glsl!("radius/tables/summed_area_table/count_unconditional_fetches.glsl")
     } else {
-        glsl!("count/summed_area_table.glsl")
+        glsl!("radius/tables/summed_area_table/count.glsl")
     })
 }

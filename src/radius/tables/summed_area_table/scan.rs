@@ -261,22 +261,24 @@ fn tile_sums_source(density: TextureFormat, settings: &Settings) -> ShaderSource
         density,
         settings,
     )
-    .file(glsl!("build/scan/tile_sums.frag"))
+    .file(glsl!("radius/tables/summed_area_table/scan/tile_sums.frag"))
 }
 
 fn scan_sources(axis: Axis) -> [ShaderSource; 2] {
     let source = |label| {
         let (variant, elements) = match axis {
-            Axis::Rows => ("rows", glsl!("build/scan/along_rows.glsl")),
-            Axis::Columns => ("columns", glsl!("build/scan/along_columns.glsl")),
+            Axis::Rows => ("rows", glsl!("radius/tables/summed_area_table/scan/along_rows.glsl")),
+            Axis::Columns => ("columns", glsl!("radius/tables/summed_area_table/scan/along_columns.glsl")),
         };
         ShaderSource::new(label).variant(variant).file(elements)
     };
     [
-        source(GROUP_SUMS).targets([TextureFormat::Rgba32Uint]).file(glsl!("build/scan/group_sums.frag")),
+        source(GROUP_SUMS)
+            .targets([TextureFormat::Rgba32Uint])
+            .file(glsl!("radius/tables/summed_area_table/scan/group_sums.frag")),
         source(ELEMENTS_BEFORE)
             .targets([TextureFormat::Rgba32Uint; 8])
-            .file(glsl!("build/scan/elements_before.frag")),
+            .file(glsl!("radius/tables/summed_area_table/scan/elements_before.frag")),
     ]
 }
 
@@ -286,10 +288,10 @@ fn tiles_source(density: TextureFormat, settings: &Settings) -> ShaderSource {
         density,
         settings,
     )
-    .file(glsl!("build/scan/tiles.frag"))
+    .file(glsl!("radius/tables/summed_area_table/scan/tiles.frag"))
 }
 
 fn unpack_source(settings: &Settings) -> ShaderSource {
     tables::number(ShaderSource::new(UNPACK).targets([tables::format(settings)]), settings)
-        .file(glsl!("build/scan/unpack.frag"))
+        .file(glsl!("radius/tables/summed_area_table/scan/unpack.frag"))
 }

@@ -5,13 +5,10 @@ use std::fmt::Display;
 use gltf_json::buffer::View;
 use gltf_json::{Index, Value};
 
+use super::compression::{COMPRESSIONS, compressed};
 use super::document::Document;
-use super::extensions::{COMPRESSIONS, compressed};
 use super::{Problem, problem, uri};
 
-/// Bytes of numbers that a file may bring without buffers to hold them: by repetition, or as zeros that are
-/// declared and not stored.
-pub(super) const ALLOWANCE: u64 = 1 << 28;
 /// Bytes of numbers that each byte of a buffer may become besides: a number of one byte becomes one of four.
 const GROWTH: u64 = 4;
 

@@ -13,6 +13,10 @@ use crate::scene::source::Files;
 
 const REMEDY: &str = "export the mesh again as glTF 2.0";
 
+/// Bytes of numbers that a file may bring without buffers to hold them: by repetition, or as zeros that are
+/// told and not stored.
+const ALLOWANCE: u64 = 1 << 28;
+
 const CAMERAS: Kind = ("camera", "cameras");
 const ANIMATIONS: Kind = ("animation (shown at rest)", "animations (shown at rest)");
 
@@ -68,7 +72,7 @@ impl<'a> Document<'a> {
         left_out.add(ANIMATIONS, census.animations);
         let contents = root.buffers.iter().map(|_| OnceCell::new()).collect();
         let folder = name.rsplit_once('/').map_or(String::new(), |(folder, _)| format!("{folder}/"));
-        Ok(Self { root, files, folder, blob, contents, allowance: Cell::new(super::buffer::ALLOWANCE) })
+        Ok(Self { root, files, folder, blob, contents, allowance: Cell::new(ALLOWANCE) })
     }
 
     /// What an index names.

@@ -3,10 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use gltf_json::Accessor;
-use gltf_json::mesh::Primitive;
-
-use super::document::Document;
+use super::compression::{COMPRESSIONS, compressed};
 use super::left_out::{Kind, LeftOut};
 use super::{Problem, problem};
 
@@ -26,10 +23,6 @@ const READ: &[&str] = &[
     "KHR_texture_transform",
     "MSFT_texture_dds",
 ];
-
-/// Vertices in these are read only where the file holds them uncompressed as well.
-pub(super) const COMPRESSIONS: &[&str] =
-    &["EXT_meshopt_compression", "KHR_draco_mesh_compression", "KHR_meshopt_compression"];
 
 /// They change no picture of the file at rest.
 const WITHOUT_EFFECT: &[&str] = &[
@@ -85,34 +78,6 @@ pub(super) fn check(
             let times = if count > 1 { format!("{name}, {count} times") } else { name.to_owned() };
             left_out.name(UNKNOWN, times);
         }
-    }
-    Ok(())
-}
-
-/// The error for vertices that are there in compressed form only.
-pub(super) fn compressed(place: &str, name: &str) -> Problem {
-    let reason = format!("it needs the extension {name}, which is not supported");
-    problem(place, reason, "export the mesh without compression")
-}
-
-/// Whether the vertices of a primitive are there without compression as well.
-///
-/// # Errors
-/// If they are not.
-pub(super) fn uncompressed(
-    document: &Document<'_>,
-    primitive: &Primitive,
-    place: &str,
-) -> Result<(), Problem> {
-    let others = primitive.extensions.as_ref().map(|extensions| &extensions.others);
-    let Some(name) =
-        COMPRESSIONS.iter().find(|name| others.is_some_and(|others| others.contains_key(**name)))
-    else {
-        return Ok(());
-    };
-    let is_empty = |index| document.root.get(index).is_some_and(|one: &Accessor| one.buffer_view.is_none());
-    if primitive.attributes.values().chain(&primitive.indices).copied().any(is_empty) {
-        return Err(compressed(place, name));
     }
     Ok(())
 }

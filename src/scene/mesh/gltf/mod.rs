@@ -6,6 +6,7 @@
 mod accessor;
 mod attributes;
 mod buffer;
+mod compression;
 mod container;
 mod document;
 mod extensions;

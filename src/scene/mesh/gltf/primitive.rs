@@ -1,10 +1,12 @@
 //! One primitive of a mesh: its faces where its node or its skin puts them.
 
 use glam::DAffine3;
+use gltf_json::Accessor;
 use gltf_json::mesh::{Mode, Primitive};
 use gltf_json::validation::Checked;
 
 use super::attributes::{Attributes, Faces};
+use super::compression::{COMPRESSIONS, compressed};
 use super::left_out::{Kind, LeftOut};
 use super::material::{self, Materials};
 use super::node::normal_matrix;
@@ -57,7 +59,7 @@ impl Shop<'_> {
             return Ok(None);
         };
         let attributes = Attributes { document, primitive, place };
-        super::extensions::uncompressed(document, primitive, place)?;
+        uncompressed(document, primitive, place)?;
         let Some(positions) = attributes.positions(weights)? else {
             self.left_out.add(WITHOUT_POSITIONS, 1);
             return Ok(None);
@@ -127,4 +129,22 @@ fn put(part: &mut Part, to_world: impl Fn(usize) -> DAffine3) {
         let turned = normal_matrix(to_world(vertex).matrix3) * normal.as_dvec3();
         *normal = turned.try_normalize().unwrap_or_default().as_vec3();
     }
+}
+
+/// Whether the vertices of a primitive are there without compression as well.
+///
+/// # Errors
+/// If they are not.
+fn uncompressed(document: &Document<'_>, primitive: &Primitive, place: &str) -> Result<(), Problem> {
+    let others = primitive.extensions.as_ref().map(|extensions| &extensions.others);
+    let Some(name) =
+        COMPRESSIONS.iter().find(|name| others.is_some_and(|others| others.contains_key(**name)))
+    else {
+        return Ok(());
+    };
+    let is_empty = |index| document.root.get(index).is_some_and(|one: &Accessor| one.buffer_view.is_none());
+    if primitive.attributes.values().chain(&primitive.indices).copied().any(is_empty) {
+        return Err(compressed(place, name));
+    }
+    Ok(())
 }

@@ -9,7 +9,7 @@ use gltf_json::{Image, Index};
 
 use super::document::Document;
 use super::uri;
-use crate::scene::mesh::image::Images;
+use crate::scene::mesh::images::Images;
 use crate::scene::{Texture, Wrap};
 
 /// Extensions that bring images in formats which are not read.

@@ -7,7 +7,7 @@ use glam::Vec3;
 
 use super::lines::shown;
 use super::mtl::{DEFAULT_DIFFUSE, Entry, ImageName};
-use crate::scene::mesh::image::Images;
+use crate::scene::mesh::images::Images;
 use crate::scene::mesh::{Mesh, Part};
 use crate::scene::source::{self, Files};
 use crate::scene::{Material, Scattering, Texture, Wrap};

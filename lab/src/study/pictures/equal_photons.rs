@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::metric::Sweep;
 use super::{Chosen, Metric, PictureRow, Width};
-use crate::RatioInterval;
+use crate::confidence::RatioInterval;
 use varikernel::settings::{Kernel, PictureSettings};
 
 /// Who is better on these seeds: the interval of 95 % decides. The widths were chosen on the same seeds, so

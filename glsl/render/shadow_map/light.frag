@@ -1,5 +1,5 @@
 // Irradiance from one place of a light, through one side of the cube of maps around it (thesis 2.2); blending
-// adds places up. Follows shadow_map/between.glsl.
+// adds places up. Follows render/shadow_map/between.glsl.
 //
 // A map holds which triangle or sphere is nearest to the light in the direction of a texel. Of the four
 // texels around the pixel's direction, each primitive is met anew by the way from the pixel to the light: no

@@ -48,7 +48,7 @@ impl TextureFormat {
         }
     }
 
-    pub(in crate::gl) fn transfer(self) -> (u32, u32) {
+    pub(super) fn transfer(self) -> (u32, u32) {
         match self {
             Self::R32Uint => (glow::RED_INTEGER, glow::UNSIGNED_INT),
             Self::R32Float => (glow::RED, glow::FLOAT),
@@ -75,7 +75,7 @@ impl TextureFormat {
         !matches!(self, Self::R32Uint | Self::R16Uint | Self::R8Uint | Self::Rgba32Uint)
     }
 
-    pub(in crate::gl) fn texel_bytes(self) -> usize {
+    pub(super) fn texel_bytes(self) -> usize {
         match self {
             Self::R32Uint | Self::R32Float | Self::Depth32Float => 4,
             Self::R16Uint | Self::R16Float => 2,

@@ -1,4 +1,4 @@
-// How far the plane of a triangle is. Follows surfaces/ray.glsl.
+// How far the plane of a triangle is. Follows render/surfaces/ray.glsl.
 
 in vec3 at;
 flat in vec3 facing;

@@ -32,8 +32,11 @@
 //! - tiles of 32: fewer pixels near edges, but quads of 4 x 4 and 16 x 16 fragments on the way: 0.3 more;
 //! - skipping the box of a pixel whose bracket is decided: llvmpipe computes both sides of every branch.
 
+mod class;
+
 use glam::UVec2;
 
+use self::class::{Class, define_classes};
 use super::mask_tiles::{self, MaskTiles};
 use super::{of_pixels, search_source, unreached};
 use crate::error::Result;
@@ -55,47 +58,6 @@ const TILE_SIDE: u32 = 64;
 const BLOCK_SIDES: [(u32, u32); 2] = [(TILE_SIDE, 8), (8, FINEST_SIDE)];
 /// Pixels of the side of the smallest blocks: 2, so that two radii are left for a pixel.
 const FINEST_SIDE: u32 = 2;
-
-/// Which programs a tile's pixels take.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Class {
-    Unreached,
-    Dense,
-    Inner,
-    Edge,
-    Kept,
-}
-
-impl Class {
-    /// Those that need brackets of blocks.
-    const WITH_BLOCKS: [Self; 2] = [Self::Inner, Self::Edge];
-
-    /// Whether tiles of the class occur.
-    fn occurs(self, settings: &Settings) -> bool {
-        self != Self::Edge || settings.search.edges == Edges::Scale
-    }
-
-    /// Adds the numbers of all classes, this one's, and its name.
-    fn define(self, source: ShaderSource) -> ShaderSource {
-        define_classes(source).define("CLASS", self as u32).variant(match self {
-            // Drawn as tiles, in place of the whole map.
-            Self::Unreached => "tiles",
-            Self::Dense => "dense",
-            Self::Inner => "inner",
-            Self::Edge => "edge",
-            Self::Kept => "kept",
-        })
-    }
-}
-
-fn define_classes(source: ShaderSource) -> ShaderSource {
-    source
-        .define("CLASS_UNREACHED", Class::Unreached as u32)
-        .define("CLASS_DENSE", Class::Dense as u32)
-        .define("CLASS_INNER", Class::Inner as u32)
-        .define("CLASS_EDGE", Class::Edge as u32)
-        .define("CLASS_KEPT", Class::Kept as u32)
-}
 
 /// Brackets of tiles and blocks, and the programs that fill them and the map.
 #[derive(Debug)]
@@ -291,7 +253,7 @@ fn tile_source(density: TextureFormat, settings: &Settings, before: Before) -> S
         .define_if(settings.masked, "MASKED")
         .define_if(before != Before::Nothing, "CHANGED")
         .define_if(before == Before::Added, "ONLY_ADDED");
-    of_block(source, density, settings, TILE_SIDE).file(glsl!("bracket/tile.frag"))
+    of_block(source, density, settings, TILE_SIDE).file(glsl!("radius/search/bracketed/tile.frag"))
 }
 
 /// The brackets of blocks, for each class that needs them.
@@ -314,9 +276,9 @@ fn block_sources(
             // One step halves the radii that are left.
             let steps = (wider_side - side + 1).next_power_of_two().ilog2();
             of_block(source.define("STEPS", steps), density, &without_edges(settings), side)
-                .file(glsl!("bracket/inner.frag"))
+                .file(glsl!("radius/search/bracketed/inner.frag"))
         } else {
-            of_block(source, density, settings, side).file(glsl!("bracket/edge.frag"))
+            of_block(source, density, settings, side).file(glsl!("radius/search/bracketed/edge.frag"))
         }
     };
     Class::WITH_BLOCKS.into_iter().filter(|class| class.occurs(settings)).map(of_class).collect()
@@ -330,7 +292,7 @@ fn of_block(source: ShaderSource, density: TextureFormat, settings: &Settings, s
         .define_if(settings.search.edges == Edges::Zero, "EDGES_ZERO")
         .define_if(exactness::needs_wide_products(settings), "WIDE_PRODUCTS")
         .file(glsl!("common/enough.glsl"));
-    tables::counter(source, density, settings).file(glsl!("bracket/block.glsl"))
+    tables::counter(source, density, settings).file(glsl!("radius/search/bracketed/block.glsl"))
 }
 
 /// The pixels of each class that is drawn.

@@ -1,4 +1,4 @@
-// Which triangle is nearest to a place, from 1 (thesis 2.2, 2.6.1). Follows surfaces/plane.glsl.
+// Which triangle is nearest to a place, from 1 (thesis 2.2, 2.6.1). Follows render/surfaces/plane.glsl.
 
 flat in float number;
 

@@ -1,5 +1,5 @@
 // Where a line of sight meets a sphere, exactly and not as triangles: place, normal and albedo; for a cube
-// map, which sphere. Follows surfaces/ray.glsl.
+// map, which sphere. Follows render/surfaces/ray.glsl.
 
 flat in vec3 centre;
 flat in vec3 reflectance;

@@ -1,4 +1,4 @@
-// Place, normal and albedo of what is nearest (thesis 2.3.2). Follows surfaces/plane.glsl.
+// Place, normal and albedo of what is nearest (thesis 2.3.2). Follows render/surfaces/plane.glsl.
 
 flat in vec3 reflectance;
 flat in float number;
