@@ -12,8 +12,8 @@
 //! #     host_texture: glow::Texture,
 //! #     photons_drawn: u64,
 //! # ) -> varikernel::Result<()> {
-//! use varikernel::settings::{Edges, Order, Search};
-//! use varikernel::{AdaptivePipeline, CountBounds, DensityMap, Frame, Gl, Settings};
+//! use varikernel::settings::{Edges, Order, Planning, Search};
+//! use varikernel::{CountBounds, DensityMap, Frame, Gl, RadiusPipeline, Settings};
 //!
 //! // SAFETY: the host's context is current on this thread while `gl`, or anything made from it, is used.
 //! let gl = unsafe { Gl::from_loader(loader) }?;
@@ -21,8 +21,8 @@
 //! // The host's texture: GL_R32UI, GL_R32F or GL_R8UI, photons per pixel.
 //! let density = DensityMap::borrow(&gl, host_texture, CountBounds::total_at_most(photons_drawn))?;
 //! let search = Search { min_photons: 25, max_radius: 32, edges: Edges::Scale, order: Order::Bracketed };
-//! let settings = Settings { search, ..Settings::default() };
-//! let mut pipeline = AdaptivePipeline::new(&gl, density.size(), density.format(), settings)?;
+//! let settings = Settings { search, planning: Planning::EachFrame, ..Settings::default() };
+//! let mut pipeline = RadiusPipeline::new(&gl, density.size(), density.format(), settings)?;
 //!
 //! // Each frame; with `changed` and `mask` it costs only what has changed, where a radius is needed:
 //! let radii = pipeline.update(&Frame::new(&density))?;
@@ -54,7 +54,7 @@
 //! | [`irradiance`] | [`IrradiancePipeline`]: photons and a g-buffer in, irradiance out |
 //! | `density`, `splat` | its stages beside the radii: photons counted, kernels drawn |
 //! | `position` | a host's depth buffer to the places that its pixels show |
-//! | `adaptive` | [`AdaptivePipeline`]: plans each frame by the photons of the ones before |
+//! | `frame_planner` | plans each frame by the photons of the ones before, for [`Planning::EachFrame`](settings::Planning::EachFrame) |
 //! | [`planner`] | which table, build and search suit a map |
 //! | [`pipeline`] | the stages in order; what a host calls |
 //! | [`certificate`] | proof that a radius map is the definition's, without computing that |
@@ -136,6 +136,6 @@ pub use maps::{
     MaskMaker, PhotonPoints, PositionMaker, RadiusMap, SurfaceMaps,
 };
 pub use photon::PhotonPoint;
-pub use radius::{AdaptivePipeline, Certificate, MemoryRequired, RadiusPipeline};
+pub use radius::{Certificate, MemoryRequired, RadiusPipeline};
 pub use settings::Settings;
 pub use view::View;

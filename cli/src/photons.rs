@@ -12,6 +12,7 @@ use varikernel::photon::{self, Emission, Ends, Landings, PhotonFormat, Tally, Tr
 use varikernel::scene::Scene;
 
 use super::numbers::{whole, whole_checked_later};
+use super::words::in_words_of_options;
 use super::{Outcome, output};
 
 /// Trace photons through a scene and write their diffuse landings.
@@ -87,10 +88,10 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
         seed: args.seed,
         russian_roulette: args.russian_roulette,
     };
-    let emission = Emission::new(&scene, &settings)?;
+    let emission = Emission::new(&scene, &settings).map_err(in_words_of_options)?;
     let threads = args.threads.unwrap_or(0);
     if args.threads == Some(0) {
-        bail!("--threads 0 is not possible: nobody would trace; give at least 1");
+        bail!("--threads 0 is not possible: it is at least 1, since threads trace");
     }
     let pool =
         rayon::ThreadPoolBuilder::new().num_threads(threads).build().context("can't start the threads")?;

@@ -38,8 +38,8 @@ pub struct PlainFrame {
     /// No more photons than these are in the map: how many were drawn. 0 leaves the counting out. Default
     /// VARIKERNEL_PHOTONS_UNKNOWN, with which a frame is refused unless n and MR alone prove it exact.
     pub photons_at_most: u64,
-    /// For a pipeline with masks: a GL_R8UI, GL_R16UI or GL_R32UI texture of the map's size, 0 where no radius is needed;
-    /// such pixels get radius 0. Else 0. Default 0.
+    /// For a pipeline with masks: a GL_R8UI, GL_R16UI or GL_R32UI texture of the map's size, 0 where no radius is
+    /// needed; such pixels get radius 0. The name 0 where every pixel needs one. Default 0.
     pub mask_texture: u32,
     /// What differs from the frame before: VARIKERNEL_CHANGED_... Default VARIKERNEL_CHANGED_EVERYTHING.
     pub changed: u32,

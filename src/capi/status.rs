@@ -25,7 +25,7 @@ pub enum Status {
     Setting = 5,
     /// A map is larger than the device's textures.
     TooLarge = 6,
-    /// A texture does not fit: another target, format or size; a mask that is missing or not expected.
+    /// A texture does not fit: another target, format or size; a mask that is not expected.
     Mismatch = 7,
     /// The radii could be wrong, since sums might wrap; nothing was drawn. The text says what would be exact.
     Inexact = 8,

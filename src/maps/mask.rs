@@ -11,13 +11,15 @@ use crate::image::Image;
 
 const TESTED: &str = "mask of tested pixels";
 
-/// Which pixels need a radius: a GL_R8UI, GL_R16UI or GL_R32UI texture, 0 where none is needed (background, no receiver,
-/// a radius that is still valid elsewhere).
+/// Which pixels need a radius: a GL_R8UI, GL_R16UI or GL_R32UI texture, 0 where none is needed (background,
+/// no receiver, a radius that is still valid elsewhere).
 ///
 /// Their radius is 0, which no other pixel has, and they are not limited.
 #[derive(Debug)]
 pub struct Mask {
     texture: Texture,
+    /// Whether it is one texel that stands for all pixels of a map, each of which needs a radius.
+    every_pixel: bool,
 }
 
 impl Mask {
@@ -30,10 +32,11 @@ impl Mask {
         let texture = Texture::new(gl, TextureFormat::R8Uint, mask.size(), 1)?.labelled("mask");
         texture.upload(mask);
         gl.check("uploading a mask")?;
-        Ok(Self { texture })
+        Ok(Self { texture, every_pixel: false })
     }
 
-    /// Uses a texture that the host owns and keeps alive as long as this; its contents may change between frames.
+    /// Uses a texture that the host owns and keeps alive as long as this; its contents may change between
+    /// frames.
     ///
     /// # Errors
     /// [`Error::Mismatch`] unless it is a GL_TEXTURE_2D of one of the formats above, with level 0
@@ -48,7 +51,24 @@ impl Mask {
                 got: texture.format().name().to_owned(),
             });
         }
-        Ok(Self { texture })
+        Ok(Self { texture, every_pixel: false })
+    }
+
+    /// One texel for all pixels, whatever the map's size: what is bound where a frame has no mask.
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`].
+    pub(crate) fn of_every_pixel(gl: &Gl) -> Result<Self> {
+        let mask = Self::upload(gl, &Image::filled(UVec2::ONE, 1))?;
+        Ok(Self { every_pixel: true, ..mask })
+    }
+
+    /// The bytes of [`of_every_pixel`](Self::of_every_pixel).
+    pub(crate) const BYTES_OF_EVERY_PIXEL: u64 = 1;
+
+    /// Whether it was made by [`of_every_pixel`](Self::of_every_pixel).
+    pub(crate) fn is_every_pixel(&self) -> bool {
+        self.every_pixel
     }
 
     /// Columns and rows.
@@ -62,7 +82,8 @@ impl Mask {
     }
 }
 
-/// Makes masks of a host's depth or stencil buffers, for those who have no mask: one pass and one byte a pixel.
+/// Makes masks of a host's depth or stencil buffers, for those who have no mask: one pass and one byte a
+/// pixel.
 #[derive(Debug)]
 pub struct MaskMaker {
     gl: Gl,
@@ -85,7 +106,8 @@ impl MaskMaker {
         Ok(Self { gl: gl.clone(), program: Program::new(gl, &Self::shader_source())?, target, mask })
     }
 
-    /// Pixels that have something in front of the far plane: whose depth is less than 1, or, `reversed`, more than 0.
+    /// Pixels that have something in front of the far plane: whose depth is less than 1, or, `reversed`, more
+    /// than 0.
     ///
     /// # Errors
     /// [`Error::Mismatch`] unless `depth` is a GL_TEXTURE_2D with depth, of the masks' size.

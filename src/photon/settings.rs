@@ -35,10 +35,10 @@ impl TraceSettings {
             Err(Error::Setting { name, value: "0".to_owned(), reason: reason.to_owned() })
         };
         if self.photons == 0 {
-            return refuse("photons", "no photon means no light; ask for at least 1");
+            return refuse("photons", "it is at least 1, since no photon means no light");
         }
         if self.bounces == 0 {
-            return refuse("bounces", "the first landing is one; ask for at least 1");
+            return refuse("bounces", "it is at least 1, the first landing");
         }
         Ok(())
     }

@@ -20,7 +20,7 @@ use crate::gl::{
 use crate::maps::exactness::{self, Plan};
 use crate::maps::{DensityMap, RadiusMap};
 use crate::radius::tables::{self, Tables};
-use crate::settings::{Edges, Exactness, Faults, Method, Settings};
+use crate::settings::{Edges, Exactness, Faults, Laboratory, Method, Settings};
 
 const RADII: &str = "certify radii";
 const ENTRIES: &str = "certify entries";
@@ -53,7 +53,7 @@ impl Certificate {
         }
         Err(Error::Setting {
             name: "method",
-            value: format!("{:?}", settings.method),
+            value: settings.method.name().to_owned(),
             reason: "two boxes in a summed-area table certify a radius; choose that method, or certify the map by a \
                      pipeline of it"
                 .to_owned(),
@@ -65,7 +65,8 @@ impl Certificate {
     /// # Errors
     /// [`Error::Inexact`] if a sum could round or wrap, whether or not the settings waive that.
     pub(crate) fn plan(settings: &Settings, density: &DensityMap) -> Result<Plan> {
-        let settings = Settings { exactness: Exactness::Required, ..faultless(settings) };
+        let mut settings = faultless(settings);
+        settings.laboratory.exactness = Exactness::Required;
         exactness::plan(&settings, density.size(), density.bounds())
     }
 }
@@ -196,5 +197,8 @@ fn entries_source(density: TextureFormat, settings: &Settings) -> ShaderSource {
 
 /// The same question, counted as it is meant.
 fn faultless(settings: &Settings) -> Settings {
-    Settings { faults: Faults::NONE, variation: None, ..*settings }
+    Settings {
+        laboratory: Laboratory { faults: Faults::NONE, variation: None, ..settings.laboratory },
+        ..*settings
+    }
 }

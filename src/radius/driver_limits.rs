@@ -29,7 +29,7 @@ pub(crate) fn passes(device: &DeviceInfo, settings: &Settings) -> Result<Vec<Ran
     if device.is_softpipe() && has_stack {
         return Err(Error::Setting {
             name: "method",
-            value: format!("{:?}", settings.method),
+            value: settings.method.name().to_owned(),
             reason:
                 "it keeps a stack for each fragment, and softpipe stores to shader arrays wrongly; use the \
                      summed-area table, or another renderer"
@@ -109,19 +109,19 @@ fn binary_turns(settings: &Settings) -> u64 {
 /// ends counts as well.
 fn turns_of_box(settings: &Settings, radius: u32) -> u64 {
     let side = 2 * u64::from(radius) + 1;
-    let matching = match settings.matching {
+    let matching = match settings.laboratory.matching {
         Matching::Modulo => u64::from(tables::largest_level(settings.search.max_radius)) + 1,
         Matching::Bits => 0,
     };
     2 + match settings.method {
-        Method::BruteForce => match settings.variation {
+        Method::BruteForce => match settings.laboratory.variation {
             // All rings up to this one, summed.
             Some(Variation::ReusedSums) => 1 + u64::from(radius) * u64::from(radius + 3),
             Some(Variation::FetchesAtOnce) => 1 + side * (2 + side.div_ceil(4)),
             _ => (side + 1) * (side + 1),
         },
         // Four strips, and blocks of at least 2 x 2 in the even rest of at most 2 r by 2 r.
-        Method::Pyramid if settings.variation == Some(Variation::WholeStrips) => {
+        Method::Pyramid if settings.laboratory.variation == Some(Variation::WholeStrips) => {
             4 * (1 + side) + 1 + u64::from(radius).pow(2) * (1 + matching)
         }
         Method::Pyramid | Method::AveragedMipmap => 1 + tables::most_blocks(radius) * (1 + matching),
@@ -131,7 +131,7 @@ fn turns_of_box(settings: &Settings, radius: u32) -> u64 {
 
 /// Turns for a radius that follows the one before it in the same pass.
 fn turns_of_next_box(settings: &Settings, radius: u32) -> u64 {
-    if settings.variation == Some(Variation::ReusedSums) {
+    if settings.laboratory.variation == Some(Variation::ReusedSums) {
         2 + turns_of_ring(radius)
     } else {
         turns_of_box(settings, radius)

@@ -3,15 +3,14 @@
 //! A table is built of the map ([`tables`]), then searched (`search`); [`RadiusPipeline`] does both. [`planner`] says which
 //! table, build and order suit a map, and [`certificate`] proves a result without the definition.
 
-mod adaptive;
 pub mod certificate;
 mod driver_limits;
+mod frame_planner;
 mod pipeline;
 pub mod planner;
 pub(crate) mod search;
 pub mod tables;
 
-pub use adaptive::AdaptivePipeline;
 pub use certificate::Certificate;
 pub(crate) use pipeline::check_fits;
 pub use pipeline::{MemoryRequired, RadiusPipeline, shader_sources};

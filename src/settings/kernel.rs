@@ -9,6 +9,7 @@ pub const MAX_PICTURE_RADIUS: u32 = 96;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
+#[non_exhaustive]
 pub enum Kernel {
     /// 1: the same everywhere on the disc.
     Box,

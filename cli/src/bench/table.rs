@@ -6,7 +6,6 @@ use std::time::Duration;
 use anyhow::Result;
 use comfy_table::presets::NOTHING;
 use comfy_table::{CellAlignment, ContentArrangement, Table};
-use varikernel::settings::{Edges, Order};
 use varikernel_lab::bench::{AUTO, Case, Device, Report, Run, Stage, Verdict, compare};
 
 use super::rivals;
@@ -260,11 +259,7 @@ fn heading(case: &Case) -> String {
     let map = map_name(case);
     match (case.min_photons, case.max_radius, case.edges) {
         (Some(n), Some(radius), Some(edges)) => {
-            let edges = match edges {
-                Edges::Zero => "zero",
-                Edges::Scale => "scale",
-            };
-            format!("{map}: n {n}, MR {radius}, edges {edges}")
+            format!("{map}: n {n}, MR {radius}, edges {}", edges.name())
         }
         _ => map,
     }
@@ -277,9 +272,7 @@ fn map_name(case: &Case) -> String {
 
 pub(super) fn order(case: &Case) -> &'static str {
     match (case.search, case.stage) {
-        (Some(Order::Forward), _) => "forward",
-        (Some(Order::Binary), _) => "binary",
-        (Some(Order::Bracketed), _) => "bracketed",
+        (Some(order), _) => order.name(),
         (None, Stage::Copy | Stage::Probe | Stage::Build | Stage::Certify) => "",
         (None, Stage::Frame) if case.variant == AUTO => "planned",
         (None, Stage::Search | Stage::Frame) => "its own",

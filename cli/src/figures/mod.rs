@@ -21,7 +21,8 @@ use varikernel_lab::{LightError, PictureError};
 use self::regions::{RegionErrors, Regions};
 use super::numbers::whole_checked_later;
 use super::photons::load;
-use super::render::{Bar, Source, in_words_of_options};
+use super::render::{Bar, Source};
+use super::words::in_words_of_options;
 use super::{Outcome, device, output};
 
 /// Fixed radii that are tried for the best one.
@@ -99,7 +100,7 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     let source = &args.source;
     if args.reference_seeds < 2 {
         bail!(
-            "--reference-seeds {} is not possible: two halves tell the noise, give at least 2",
+            "--reference-seeds {} is not possible: it is at least 2, since two halves tell the noise",
             args.reference_seeds
         );
     }

@@ -62,7 +62,7 @@ impl Rival {
             Self::Kiddo => {
                 return Err(Error::Setting {
                     name: "edges",
-                    value: format!("{:?}", search.edges).to_lowercase(),
+                    value: search.edges.name().to_owned(),
                     reason: "a search for the nearest photons knows zero edges only".to_owned(),
                 });
             }

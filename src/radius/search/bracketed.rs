@@ -44,13 +44,11 @@ use crate::maps::RadiusMap;
 use crate::maps::exactness;
 use crate::maps::{Changed, Frame, Rectangle};
 use crate::radius::tables::{self, Tables};
-use crate::settings::{Edges, Order, Search, Settings};
+use crate::settings::{BRACKET_TILE_SIDE as TILE_SIDE, Edges, Order, Search, Settings};
 
 const TILE: &str = "radius tiles";
 const BLOCKS: &str = "radius blocks";
 
-/// Pixels of a tile's side.
-const TILE_SIDE: u32 = 64;
 /// Pixels of the sides of the blocks inside, each with the side of what it lies in.
 const BLOCK_SIDES: [(u32, u32); 2] = [(TILE_SIDE, 8), (8, FINEST_SIDE)];
 /// Pixels of the side of the smallest blocks: 2, so that two radii are left for a pixel.
@@ -196,7 +194,7 @@ impl Bracketed {
         }
 
         // A clear takes no heed of what is kept.
-        let clears = before == Before::Nothing && !self.settings.masked;
+        let clears = before == Before::Nothing && !frame.leaves_out_pixels();
         if clears {
             unreached::clear(&self.settings, radii);
         }

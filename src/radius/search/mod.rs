@@ -158,7 +158,7 @@ fn search_source(density: TextureFormat, settings: &Settings, continued: Continu
         .variant_if(continued == Continued::Yes, "continued")
         .targets(RadiusMap::formats(settings.limited_mask))
         .define_if(settings.search.edges == Edges::Zero, "EDGES_ZERO")
-        .define_if(settings.faults.float_ratio, "FAULT_FLOAT_RATIO")
+        .define_if(settings.laboratory.faults.float_ratio, "FAULT_FLOAT_RATIO")
         .define_if(exactness::needs_wide_products(settings), "WIDE_PRODUCTS")
         .define_if(settings.limited_mask, "LIMITED_MASK")
         .define_if(settings.masked, "MASKED")

@@ -30,8 +30,9 @@ impl BruteForce {
 }
 
 pub(super) fn counter(source: ShaderSource, density: TextureFormat, settings: &Settings) -> ShaderSource {
-    let source = source.define_if(settings.variation == Some(Variation::ReusedSums), "BOX_UNCLIPPED");
-    super::density_access(source, density, settings).file(match settings.variation {
+    let source =
+        source.define_if(settings.laboratory.variation == Some(Variation::ReusedSums), "BOX_UNCLIPPED");
+    super::density_access(source, density, settings).file(match settings.laboratory.variation {
         Some(Variation::ReusedSums) => glsl!("count/brute_force_reused_sums.glsl"),
         Some(Variation::FetchesAtOnce) => glsl!("count/brute_force_fetches_at_once.glsl"),
         _ => glsl!("count/brute_force.glsl"),

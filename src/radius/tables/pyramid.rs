@@ -55,10 +55,10 @@ pub fn most_blocks(radius: u32) -> u64 {
 pub(super) fn counter(source: ShaderSource, settings: &Settings) -> ShaderSource {
     let source = source
         .define("STACK_SIZE", stack_size(settings.search.max_radius))
-        .define_if(settings.split == Split::Larger, "SPLIT_LARGER")
-        .define_if(settings.matching == Matching::Bits, "MATCHING_BITS")
+        .define_if(settings.laboratory.split == Split::Larger, "SPLIT_LARGER")
+        .define_if(settings.laboratory.matching == Matching::Bits, "MATCHING_BITS")
         .define_if(settings.method == Method::AveragedMipmap, "AVERAGED")
-        .define_if(settings.variation == Some(Variation::WholeStrips), "WHOLE_STRIPS")
-        .define_if(settings.faults.forgotten_strip, "FAULT_FORGOTTEN_STRIP");
+        .define_if(settings.laboratory.variation == Some(Variation::WholeStrips), "WHOLE_STRIPS")
+        .define_if(settings.laboratory.faults.forgotten_strip, "FAULT_FORGOTTEN_STRIP");
     super::number(source, settings).file(glsl!("count/pyramid.glsl"))
 }

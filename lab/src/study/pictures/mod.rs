@@ -114,11 +114,12 @@ impl PictureStudy {
         }
         for &radius in &self.fixed {
             if !(1..=MAX_PICTURE_RADIUS).contains(&radius) {
-                return refuse("fixed", radius.to_string(), "a kernel's radius goes from 1 to 96 pixels");
+                let reason = format!("a kernel's radius goes from 1 to {MAX_PICTURE_RADIUS} pixels");
+                return refuse("fixed", radius.to_string(), &reason);
             }
         }
         if self.photons.contains(&0) || self.reference_photons == 0 {
-            return refuse("photons", "0".to_owned(), "no photon means no light; ask for at least 1");
+            return refuse("photons", "0".to_owned(), "it is at least 1, since no photon means no light");
         }
         if self.seeds == 0 {
             return refuse("seeds", "0".to_owned(), "a picture takes at least one; 3 tell how sure it is");

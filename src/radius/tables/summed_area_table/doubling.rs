@@ -64,10 +64,13 @@ impl Doubling {
         }
         .fill(table)?;
 
-        let (horizontal, vertical) =
-            if self.settings.faults.swapped_axes { (IVec2::Y, IVec2::X) } else { (IVec2::X, IVec2::Y) };
+        let (horizontal, vertical) = if self.settings.laboratory.faults.swapped_axes {
+            (IVec2::Y, IVec2::X)
+        } else {
+            (IVec2::X, IVec2::Y)
+        };
         for (axis, side) in [(horizontal, size.x), (vertical, size.y)] {
-            for (index, stride) in strides(self.settings.sat_samples, side) {
+            for (index, stride) in strides(self.settings.laboratory.sat_samples, side) {
                 let mut pass = Pass::new(DOUBLING, &self.step)
                     .read("table", table.texture())
                     .set("axis", axis)
@@ -89,8 +92,8 @@ impl Doubling {
     /// between (all their other samples lie before the table), and both textures are right up to s^k. The first pass
     /// finds nothing of use in the texture that it draws into, the other axis's unfinished entries or an old frame.
     fn origin(&self, axis: IVec2, index: u32, stride: i32) -> UVec2 {
-        if self.settings.variation == Some(Variation::UnfinishedTexels) && index > 0 {
-            axis.as_uvec2() * (stride.cast_unsigned() / self.settings.sat_samples.count())
+        if self.settings.laboratory.variation == Some(Variation::UnfinishedTexels) && index > 0 {
+            axis.as_uvec2() * (stride.cast_unsigned() / self.settings.laboratory.sat_samples.count())
         } else {
             UVec2::ZERO
         }
@@ -118,7 +121,7 @@ pub(super) fn sources(density: TextureFormat, settings: &Settings) -> Vec<Shader
 fn doubling_source(settings: &Settings) -> ShaderSource {
     let source = ShaderSource::new(DOUBLING)
         .targets([tables::format(settings)])
-        .define("SAMPLES", settings.sat_samples.count())
+        .define("SAMPLES", settings.laboratory.sat_samples.count())
         .define_if(settings.reaching_faults().sample_stride, "FAULT_SAMPLE_STRIDE");
     tables::number(source, settings).file(glsl!("build/doubling.frag"))
 }

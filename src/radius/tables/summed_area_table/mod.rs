@@ -61,7 +61,7 @@ impl SummedAreaTable {
     pub(super) fn new(gl: &Gl, size: UVec2, density: TextureFormat, settings: &Settings) -> Result<Self> {
         Ok(Self {
             table: Target::of(gl, &table_shape(size, settings))?,
-            build: match settings.sat_build {
+            build: match settings.laboratory.sat_build {
                 SatBuild::Doubling => {
                     Build::Doubling(Box::new(doubling::Doubling::new(gl, size, density, settings)?))
                 }
@@ -75,7 +75,7 @@ impl SummedAreaTable {
 
     pub(super) fn shapes(size: UVec2, settings: &Settings) -> Vec<TargetShape> {
         let mut shapes = vec![table_shape(size, settings)];
-        shapes.extend(match settings.sat_build {
+        shapes.extend(match settings.laboratory.sat_build {
             SatBuild::Doubling => doubling::shapes(size, settings),
             SatBuild::Scan => scan::shapes(size),
         });
@@ -140,7 +140,7 @@ impl SummedAreaTable {
             Some(mean) => pass.set("mean", mean),
             None => pass,
         };
-        if self.settings.faults.in_table_sampling() {
+        if self.settings.laboratory.faults.in_table_sampling() {
             pass.set("table_size", self.table.size().as_ivec2())
         } else {
             pass
@@ -186,7 +186,7 @@ fn mean(density: &DensityMap, settings: &Settings) -> Option<f32> {
 }
 
 pub(super) fn build_sources(density: TextureFormat, settings: &Settings) -> Vec<ShaderSource> {
-    let mut sources = match settings.sat_build {
+    let mut sources = match settings.laboratory.sat_build {
         SatBuild::Doubling => doubling::sources(density, settings),
         SatBuild::Scan => scan::sources(density, settings),
     };
@@ -200,7 +200,7 @@ fn addition_source(settings: &Settings) -> ShaderSource {
 }
 
 pub(super) fn counter(source: ShaderSource, settings: &Settings) -> ShaderSource {
-    let faults = settings.faults;
+    let faults = settings.laboratory.faults;
     let source = source
         .define_if(faults.in_table_sampling(), "BOX_UNCLIPPED")
         .define_if(faults.clamp_to_63, "FAULT_CLAMP_TO_63")
@@ -208,7 +208,7 @@ pub(super) fn counter(source: ShaderSource, settings: &Settings) -> ShaderSource
         .define_if(faults.corner_test, "FAULT_CORNER_TEST");
     super::number(source, settings).file(if faults.in_table_sampling() {
         glsl!("count/summed_area_table_as_printed.glsl")
-    } else if settings.variation == Some(Variation::UnconditionalFetches) {
+    } else if settings.laboratory.variation == Some(Variation::UnconditionalFetches) {
         glsl!("count/summed_area_table_unconditional_fetches.glsl")
     } else {
         glsl!("count/summed_area_table.glsl")
