@@ -487,7 +487,7 @@ enum varikernel_status varikernel_frame_default(struct varikernel_frame *frame, 
  *
  * Fails with SETTING, TOO_LARGE, INVALID_ARGUMENT, WRONG_THREAD, NO_CONTEXT, CONTEXT_LOST.
  */
-enum varikernel_status varikernel_memory_required(const struct varikernel_context *context,
+enum varikernel_status varikernel_pipeline_memory_required(const struct varikernel_context *context,
                                                   uint32_t width,
                                                   uint32_t height,
                                                   const struct varikernel_settings *settings,
@@ -521,7 +521,7 @@ enum varikernel_status varikernel_pipeline_create(const struct varikernel_contex
  * Fails with MISMATCH, INEXACT, SETTING, OUT_OF_MEMORY, CONTEXT_LOST, OPEN_GL, INVALID_ARGUMENT, WRONG_THREAD,
  * NO_CONTEXT; the next frame may succeed.
  */
-enum varikernel_status varikernel_render(struct varikernel_pipeline *pipeline,
+enum varikernel_status varikernel_pipeline_render(struct varikernel_pipeline *pipeline,
                                          const struct varikernel_frame *frame,
                                          uint32_t *radius_texture,
                                          uint32_t *limited_texture);
@@ -578,7 +578,7 @@ enum varikernel_status varikernel_irradiance_create(const struct varikernel_cont
  *
  * `*irradiance_texture` is a GL_TEXTURE_2D in GL_RGBA32F, a sampler2D in your shaders: power per area in scene units,
  * linear RGB; light that leaves a diffuse surface is albedo / pi of it. `*radius_texture` is as that of
- * varikernel_render, or 0 for a fixed radius; the pointer may be null. Both belong to the handle and hold until its next
+ * varikernel_pipeline_render, or 0 for a fixed radius; the pointer may be null. Both belong to the handle and hold until its next
  * frame.
  *
  * Waits for the GPU only where a pixel may hold 2^24 photons. With from_depth, a shader is compiled when a depth texture is

@@ -13,8 +13,8 @@
 //! #     host_texture: glow::Texture,
 //! #     photons_drawn: u64,
 //! # ) -> varikernel::Result<()> {
-//! use varikernel::settings::{Edges, Order, Search};
-//! use varikernel::{AdaptivePipeline, CountBounds, DensityMap, Frame, Gl, Settings};
+//! use varikernel::settings::{Edges, Order, Planning, Search};
+//! use varikernel::{CountBounds, DensityMap, Frame, Gl, RadiusPipeline, Settings};
 //!
 //! // SAFETY: the host's context is current on this thread while `gl`, or anything made from it, is used.
 //! let gl = unsafe { Gl::from_loader(loader) }?;
@@ -22,8 +22,8 @@
 //! // The host's texture: GL_R32UI, GL_R32F or GL_R8UI, photons per pixel.
 //! let density = DensityMap::borrow(&gl, host_texture, CountBounds::total_at_most(photons_drawn))?;
 //! let search = Search { min_photons: 25, max_radius: 32, edges: Edges::Scale, order: Order::Bracketed };
-//! let settings = Settings { search, ..Settings::default() };
-//! let mut pipeline = AdaptivePipeline::new(&gl, density.size(), density.format(), settings)?;
+//! let settings = Settings { search, planning: Planning::EachFrame, ..Settings::default() };
+//! let mut pipeline = RadiusPipeline::new(&gl, density.size(), density.format(), settings)?;
 //!
 //! // Each frame; with `changed` and `mask` it costs only what has changed, where a radius is needed:
 //! let radii = pipeline.update(&Frame::new(&density))?;
@@ -161,6 +161,6 @@ pub use maps::{
     MaskMaker, PhotonPoints, PositionMaker, PowerMap, RadiusMap, SurfaceMaps,
 };
 pub use photon::PhotonPoint;
-pub use radius::{AdaptivePipeline, Certificate, MemoryRequired, RadiusPipeline};
+pub use radius::{Certificate, MemoryRequired, RadiusPipeline};
 pub use settings::Settings;
 pub use view::View;

@@ -9,11 +9,12 @@ use clap::ValueEnum;
 use serde::Serialize;
 use varikernel::gl::{Interface, ShaderSource, ShaderStage, TextureFormat};
 use varikernel::image::write_atomically;
-use varikernel::settings::{Kernel, Method, RadiusChoice, Settings};
-use varikernel::{AdaptivePipeline, MaskMaker, PositionMaker, light, radius, render};
+use varikernel::settings::{Kernel, Method, Planning, RadiusChoice, Settings};
+use varikernel::{MaskMaker, PositionMaker, light, radius, render};
 
 use super::method_options::MethodOptions;
-use super::render::{in_words_of_options, parse_radius};
+use super::render::parse_radius;
+use super::words::in_words_of_options;
 use super::{Outcome, output};
 
 /// Print shaders as one variant compiles them, with a table of what they read and write.
@@ -168,8 +169,9 @@ fn sources(args: &Args, settings: &Settings) -> Vec<ShaderSource> {
     };
     let mut sources = render::surface_sources();
     sources.extend([PositionMaker::shader_source(), light::density_source(), MaskMaker::shader_source()]);
-    sources.extend(radius::shader_sources(density, settings));
-    sources.push(AdaptivePipeline::shader_source(density, settings));
+    // With the census of pipelines that plan each frame.
+    let settings = Settings { planning: Planning::EachFrame, ..*settings };
+    sources.extend(radius::shader_sources(density, &settings));
     sources.extend(light::spread_sources(args.kernel, args.radius));
     sources.extend(render::shading_sources());
     sources

@@ -22,6 +22,7 @@ mod study;
 mod synth;
 #[cfg(feature = "window")]
 mod view;
+mod words;
 
 use std::io::{self, IsTerminal as _};
 use std::process::ExitCode;

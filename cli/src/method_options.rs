@@ -2,7 +2,7 @@
 
 use clap::ValueEnum as _;
 use varikernel::settings::{
-    Edges, Exactness, Faults, Matching, Method, Order, SatBuild, SatSamples, Search, Settings, Split,
+    Edges, Faults, Laboratory, Matching, Method, Order, SatBuild, SatSamples, Search, Settings, Split,
     Storage, Variation,
 };
 
@@ -132,39 +132,35 @@ fn method(text: &str) -> Result<MethodChoice, String> {
 }
 
 impl MethodOptions {
-    /// What the options ask for; where the planner may choose, its choice without a map.
+    /// What the options ask for; where the planner may decide, what it does without a map.
     pub(super) fn settings(&self) -> Settings {
         let method = match self.method {
             MethodChoice::Auto => Method::SummedAreaTable,
             MethodChoice::Named(method) => method,
         };
-        let faults = self.faults();
-        // The thesis's listings know neither a scan nor brackets, which are for whole numbers.
-        let is_ours = method == Method::SummedAreaTable
-            && faults == Faults::NONE
-            && self.storage.is_integer()
-            && self.sat_samples.is_none();
-        let (build, order) =
-            if is_ours { (SatBuild::Scan, Order::Bracketed) } else { (SatBuild::Doubling, Order::Binary) };
-        Settings {
-            search: Search {
-                min_photons: self.min_photons,
-                max_radius: self.max_radius,
-                edges: self.edges,
-                order: self.search.unwrap_or(order),
-            },
-            method,
+        let asked = Laboratory {
             split: self.split,
             matching: self.matching,
-            sat_build: self.sat_build.unwrap_or(build),
-            sat_samples: self.sat_samples.unwrap_or(SatSamples::Four),
-            storage: self.storage,
-            faults,
             variation: self.variation,
-            exactness: Exactness::Required,
-            limited_mask: false,
-            masked: false,
-        }
+            faults: self.faults(),
+            ..Laboratory::default()
+        };
+        let asked = Settings { method, storage: self.storage, laboratory: asked, ..Settings::default() };
+        // Samples are those of the thesis's build, which has its own order as well.
+        let usual =
+            if self.sat_samples.is_some() { Settings::thesis() } else { asked.with_usual_build_and_order() };
+        let search = Search {
+            min_photons: self.min_photons,
+            max_radius: self.max_radius,
+            edges: self.edges,
+            order: self.search.unwrap_or(usual.search.order),
+        };
+        let laboratory = Laboratory {
+            sat_build: self.sat_build.unwrap_or(usual.laboratory.sat_build),
+            sat_samples: self.sat_samples.unwrap_or(usual.laboratory.sat_samples),
+            ..asked.laboratory
+        };
+        Settings { search, laboratory, ..asked }
     }
 
     /// Whether the planner may choose: where nothing else is asked for.

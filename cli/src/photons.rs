@@ -12,6 +12,7 @@ use varikernel::photon::{self, Emission, Ends, Landings, PhotonFormat, Tally, Tr
 use varikernel::scene::Scene;
 
 use super::numbers::{whole, whole_checked_later};
+use super::words::in_words_of_options;
 use super::{Outcome, output};
 
 /// Trace photons through a scene and write their diffuse landings.
@@ -90,7 +91,7 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
         seed: args.seed,
         russian_roulette: args.russian_roulette,
     };
-    let emission = Emission::new(&scene, &settings)?;
+    let emission = Emission::new(&scene, &settings).map_err(in_words_of_options)?;
     let threads = args.threads.unwrap_or(0);
     if args.threads == Some(0) {
         bail!("--threads 0 is not possible: give at least 1");

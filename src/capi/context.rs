@@ -8,7 +8,8 @@ use crate::error::Error;
 use crate::gl::{Gl, StatePolicy};
 
 /// Finds an OpenGL command by name in the context that is current: eglGetProcAddress, glfwGetProcAddress,
-/// SDL_GL_GetProcAddress, wglGetProcAddress with its fallback. Null where there is no such command. `user` is passed on.
+/// SDL_GL_GetProcAddress, wglGetProcAddress with its fallback. Null where there is no such command. `user` is
+/// passed on.
 ///
 /// It must not throw, and is called by varikernel_context_create alone.
 pub type Loader = Option<unsafe extern "C" fn(name: *const c_char, user: *mut c_void) -> *mut c_void>;
@@ -16,8 +17,8 @@ pub type Loader = Option<unsafe extern "C" fn(name: *const c_char, user: *mut c_
 /// state_policy: each call asks the driver for what it touches, and puts it back. Fits any host.
 pub const VARIKERNEL_STATE_RESTORE: u32 = 0;
 
-/// state_policy: the host vouches for OpenGL's defaults when a call starts, and finds them afterwards, but for the viewport.
-/// Faster: about 70 questions less a call.
+/// state_policy: the host vouches for OpenGL's defaults when a call starts, and finds them afterwards, but
+/// for the viewport. Faster: about 70 questions less a call.
 pub const VARIKERNEL_STATE_DEFAULTS: u32 = 1;
 
 /// An OpenGL context of the host: its commands, and what pipelines share.
@@ -94,7 +95,8 @@ fn check_current(get_string: GetString) -> Result<(), Failure> {
 /// Takes the OpenGL context that is current on this thread, 3.3 core or newer; no extension is needed.
 ///
 /// `*context` is the host's to destroy. `user` may be null and is not used later. `state_policy` is one of
-/// VARIKERNEL_STATE_... and holds for all that is made of the handle; handles of both kinds may be used side by side.
+/// VARIKERNEL_STATE_... and holds for all that is made of the handle; handles of both kinds may be used side
+/// by side.
 ///
 /// Fails with NO_CONTEXT, VERSION, SETTING, INVALID_ARGUMENT.
 #[unsafe(no_mangle)]
@@ -145,8 +147,8 @@ pub unsafe extern "C" fn varikernel_memory_held(context: *const Context, bytes: 
     })
 }
 
-/// Says that the OpenGL context has gone, or is about to: nothing made of this handle calls OpenGL from now on. Destroying
-/// then frees memory alone, and all other calls answer CONTEXT_LOST.
+/// Says that the OpenGL context has gone, or is about to: nothing made of this handle calls OpenGL from now
+/// on. Destroying then frees memory alone, and all other calls answer CONTEXT_LOST.
 ///
 /// Fails with WRONG_THREAD, INVALID_ARGUMENT.
 #[unsafe(no_mangle)]
@@ -162,6 +164,7 @@ pub unsafe extern "C" fn varikernel_context_abandon(context: *const Context) -> 
 /// Fails with WRONG_THREAD and NO_CONTEXT, and frees nothing then; see varikernel_context_abandon.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn varikernel_context_destroy(context: *mut Context) -> Status {
-    // SAFETY: the host gives a handle that `varikernel_context_create` made and that was not destroyed, or null.
+    // SAFETY: the host gives a handle that `varikernel_context_create` made and that was not destroyed, or
+    // null.
     unsafe { destroy(context, |context| &context.0) }
 }

@@ -32,14 +32,14 @@ pub const VARIKERNEL_CHANGED_ADDED: u32 = 3;
 pub struct PlainFrame {
     /// sizeof(varikernel_frame), by which another version's struct is told.
     pub struct_size: u32,
-    /// Photons per pixel: a GL_TEXTURE_2D in the pipeline's format and size, whole numbers that are not negative. It stays
-    /// the host's and is only read.
+    /// Photons per pixel: a GL_TEXTURE_2D in the pipeline's format and size, whole numbers that are not
+    /// negative. It stays the host's and is only read.
     pub density_texture: u32,
     /// No more photons than these are in the map: how many were drawn. 0 leaves the counting out. Default
     /// VARIKERNEL_PHOTONS_UNKNOWN, with which a frame is refused unless n and MR alone prove it exact.
     pub photons_at_most: u64,
-    /// For a pipeline with masks: a GL_R8UI, GL_R16UI or GL_R32UI texture of the map's size, 0 where no radius is needed;
-    /// such pixels get radius 0. Else 0. Default 0.
+    /// For a pipeline with masks: a GL_R8UI, GL_R16UI or GL_R32UI texture of the map's size, 0 where no
+    /// radius is needed; such pixels get radius 0. The name 0 where every pixel needs one. Default 0.
     pub mask_texture: u32,
     /// What differs from the frame before: VARIKERNEL_CHANGED_... Default VARIKERNEL_CHANGED_EVERYTHING.
     pub changed: u32,
@@ -81,7 +81,8 @@ pub unsafe extern "C" fn varikernel_frame_default(frame: *mut PlainFrame, size: 
 }
 
 impl PlainFrame {
-    /// The map and the mask, borrowed for this frame: the host may have given their textures another image since the last.
+    /// The map and the mask, borrowed for this frame: the host may have given their textures another image
+    /// since the last.
     pub(super) fn borrow(&self, gl: &Gl) -> Result<(DensityMap, Option<Mask>), Failure> {
         check_size("varikernel_frame", self.struct_size, SIZE)?;
         let density = texture(self.density_texture).ok_or_else(|| super::null("density_texture"))?;

@@ -1,9 +1,10 @@
 //! The C interface of `include/varikernel.h`: the pipelines by handles, plain structs and status codes.
 //!
-//! The header is generated from the files here, so their comments speak to C programmers; `examples/cpp` is a host that
-//! uses it. What C can get wrong and we can see is a status: null pointers, values out of range, another thread, no
-//! current context. A panic, our own mistake, ends at the boundary as [`Status::Internal`]. What can't be seen is for the
-//! host to keep: pointers are valid or null, handles are used between their creation and destruction.
+//! The header is generated from the files here, so their comments speak to C programmers; `examples/cpp` is a
+//! host that uses it. What C can get wrong and we can see is a status: null pointers, values out of range,
+//! another thread, no current context. A panic, our own mistake, ends at the boundary as
+//! [`Status::Internal`]. What can't be seen is for the host to keep: pointers are valid or null, handles are
+//! used between their creation and destruction.
 
 #![expect(unsafe_code, reason = "C hands over pointers; rule 8 of CONTRIBUTING.md names this module")]
 #![expect(unreachable_pub, reason = "C is the caller, and cbindgen takes what says `pub`")]

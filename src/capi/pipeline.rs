@@ -6,61 +6,24 @@ use super::{
     Context, Failure, Handle, PlainFrame, PlainSettings, Status, answer, check_place, destroy, given,
 };
 use crate::error::Error;
-use crate::gl::{Gl, TextureFormat};
+use crate::gl::TextureFormat;
 use crate::maps::Frame;
-use crate::maps::RadiusMap;
-use crate::radius::AdaptivePipeline;
 use crate::radius::RadiusPipeline;
-use crate::settings::Settings;
+use crate::settings::Planning;
 
 /// Density map in, radius map out, for one size and one set of settings.
-pub struct Pipeline(Handle<Stages>);
+pub struct Pipeline(Handle<Box<RadiusPipeline>>);
 
-enum Stages {
-    /// One order, for ever.
-    Fixed(Box<RadiusPipeline>),
-    /// An order for each frame.
-    Adaptive(Box<AdaptivePipeline>),
-}
-
-impl Stages {
-    fn new(
-        gl: &Gl,
-        size: UVec2,
-        format: TextureFormat,
-        (settings, is_adaptive): (Settings, bool),
-    ) -> Result<Self, Error> {
-        Ok(if is_adaptive {
-            Self::Adaptive(Box::new(AdaptivePipeline::new(gl, size, format, settings)?))
-        } else {
-            Self::Fixed(Box::new(RadiusPipeline::new(gl, size, format, settings)?))
-        })
-    }
-
-    fn resize(&mut self, size: UVec2) -> Result<(), Error> {
-        match self {
-            Self::Fixed(pipeline) => pipeline.resize(size),
-            Self::Adaptive(pipeline) => pipeline.resize(size),
-        }
-    }
-
-    fn update(&mut self, frame: &Frame<'_>) -> Result<&RadiusMap, Error> {
-        match self {
-            Self::Fixed(pipeline) => pipeline.update(frame),
-            Self::Adaptive(pipeline) => pipeline.update(frame),
-        }
-    }
-}
-
-/// Tells the memory that a pipeline takes, before it is made: bytes of textures and buffers, as large as their formats say.
+/// Tells the memory that a pipeline takes, before it is made: bytes of textures and buffers, as large as
+/// their formats say.
 ///
-/// `*at_creation` is what varikernel_pipeline_create and varikernel_pipeline_resize allocate; `*at_most` adds what is
-/// allocated on demand, by VARIKERNEL_CHANGED_ADDED and, for VARIKERNEL_ORDER_ADAPTIVE, by each order; the pointer may be
-/// null. `settings` may be null for the defaults.
+/// `*at_creation` is what varikernel_pipeline_create and varikernel_pipeline_resize allocate; `*at_most` adds
+/// what is allocated on demand, by VARIKERNEL_CHANGED_ADDED and, for VARIKERNEL_ORDER_ADAPTIVE, by each
+/// order; the pointer may be null. `settings` may be null for the defaults.
 ///
 /// Fails with SETTING, TOO_LARGE, INVALID_ARGUMENT, WRONG_THREAD, NO_CONTEXT, CONTEXT_LOST.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn varikernel_memory_required(
+pub unsafe extern "C" fn varikernel_pipeline_memory_required(
     context: *const Context,
     width: u32,
     height: u32,
@@ -75,12 +38,10 @@ pub unsafe extern "C" fn varikernel_memory_required(
         // SAFETY: the host gives settings or null.
         let settings = unsafe { settings.as_ref() }.map(PlainSettings::read).transpose()?.unwrap_or_default();
         let (device, size) = (gl.info(), UVec2::new(width, height));
-        let (required, of_orders) = match settings {
-            (settings, true) => {
-                let required = AdaptivePipeline::memory_required_on(device, size, &settings)?;
-                (required, required.other_orders)
-            }
-            (settings, false) => (RadiusPipeline::memory_required_on(device, size, &settings)?, 0),
+        let required = RadiusPipeline::memory_required_on(device, size, &settings)?;
+        let of_orders = match settings.planning {
+            Planning::AsAsked => 0,
+            Planning::EachFrame => required.other_orders,
         };
         if !at_most.is_null() {
             // SAFETY: the host gives a pointer to write to, or null.
@@ -92,13 +53,14 @@ pub unsafe extern "C" fn varikernel_memory_required(
     })
 }
 
-/// Allocates and compiles for density maps of `width` x `height` pixels in `density_format`: GL_R32F, as additive blending
-/// of points fills it, GL_R32UI, GL_R16UI or GL_R8UI. Takes milliseconds to seconds; frames only draw.
+/// Allocates and compiles for density maps of `width` x `height` pixels in `density_format`: GL_R32F, as
+/// additive blending of points fills it, GL_R32UI, GL_R16UI or GL_R8UI. Takes milliseconds to seconds; frames
+/// only draw.
 ///
 /// `*pipeline` is the host's to destroy, before or after `context`. `settings` may be null for the defaults.
 ///
-/// Fails with SETTING, TOO_LARGE, MISMATCH for another format, SHADER, OUT_OF_MEMORY, OPEN_GL, INVALID_ARGUMENT,
-/// WRONG_THREAD, NO_CONTEXT.
+/// Fails with SETTING, TOO_LARGE, MISMATCH for another format, SHADER, OUT_OF_MEMORY, OPEN_GL,
+/// INVALID_ARGUMENT, WRONG_THREAD, NO_CONTEXT.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn varikernel_pipeline_create(
     context: *const Context,
@@ -116,8 +78,8 @@ pub unsafe extern "C" fn varikernel_pipeline_create(
         // SAFETY: the host gives settings or null.
         let settings = unsafe { settings.as_ref() }.map(PlainSettings::read).transpose()?.unwrap_or_default();
         let format = read_format(density_format)?;
-        let made =
-            Pipeline(Handle::new(context, Stages::new(gl, UVec2::new(width, height), format, settings)?));
+        let made = RadiusPipeline::new(gl, UVec2::new(width, height), format, settings)?;
+        let made = Pipeline(Handle::new(context, Box::new(made)));
         // SAFETY: the host gives a pointer to write to.
         unsafe { pipeline.write(Box::into_raw(Box::new(made))) };
         Ok(())
@@ -126,15 +88,16 @@ pub unsafe extern "C" fn varikernel_pipeline_create(
 
 /// Finds the radii of a frame: draws only, reads nothing back, waits for nothing.
 ///
-/// `*radius_texture` is a GL_TEXTURE_2D in GL_R32UI, a usampler2D in your shaders: radii from 1 to MR in pixels, 0 where
-/// the mask says that none is needed. `*limited_texture` is one in GL_R8UI that is 1 where MR ended the search with too few
-/// photons, or 0 if the settings ask for none; the pointer may be null. Both belong to the pipeline, are complete without
-/// a sampler, and hold until its next frame. Take the names anew each frame: textures may take turns.
+/// `*radius_texture` is a GL_TEXTURE_2D in GL_R32UI, a usampler2D in your shaders: radii from 1 to MR in
+/// pixels, 0 where the mask says that none is needed. `*limited_texture` is one in GL_R8UI that is 1 where MR
+/// ended the search with too few photons, or 0 if the settings ask for none; the pointer may be null. Both
+/// belong to the pipeline, are complete without a sampler, and hold until its next frame. Take the names anew
+/// each frame: textures may take turns.
 ///
-/// Fails with MISMATCH, INEXACT, SETTING, OUT_OF_MEMORY, CONTEXT_LOST, OPEN_GL, INVALID_ARGUMENT, WRONG_THREAD,
-/// NO_CONTEXT; the next frame may succeed.
+/// Fails with MISMATCH, INEXACT, SETTING, OUT_OF_MEMORY, CONTEXT_LOST, OPEN_GL, INVALID_ARGUMENT,
+/// WRONG_THREAD, NO_CONTEXT; the next frame may succeed.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn varikernel_render(
+pub unsafe extern "C" fn varikernel_pipeline_render(
     pipeline: *mut Pipeline,
     frame: *const PlainFrame,
     radius_texture: *mut u32,
@@ -163,11 +126,12 @@ pub unsafe extern "C" fn varikernel_render(
     })
 }
 
-/// From now on for density maps of another size, with the same format and settings; the next frame starts from nothing.
-/// Nothing is compiled. Textures of earlier frames are gone; the new ones are made before the old ones are freed.
+/// From now on for density maps of another size, with the same format and settings; the next frame starts
+/// from nothing. Nothing is compiled. Textures of earlier frames are gone; the new ones are made before the
+/// old ones are freed.
 ///
-/// Fails with SETTING, TOO_LARGE, OUT_OF_MEMORY, CONTEXT_LOST, OPEN_GL, INVALID_ARGUMENT, WRONG_THREAD, NO_CONTEXT, and the
-/// pipeline then goes on at its old size.
+/// Fails with SETTING, TOO_LARGE, OUT_OF_MEMORY, CONTEXT_LOST, OPEN_GL, INVALID_ARGUMENT, WRONG_THREAD,
+/// NO_CONTEXT, and the pipeline then goes on at its old size.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn varikernel_pipeline_resize(
     pipeline: *mut Pipeline,
@@ -186,7 +150,8 @@ pub unsafe extern "C" fn varikernel_pipeline_resize(
 /// Fails with WRONG_THREAD and NO_CONTEXT, and frees nothing then; see varikernel_context_abandon.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn varikernel_pipeline_destroy(pipeline: *mut Pipeline) -> Status {
-    // SAFETY: the host gives a handle that `varikernel_pipeline_create` made and that was not destroyed, or null.
+    // SAFETY: the host gives a handle that `varikernel_pipeline_create` made and that was not destroyed, or
+    // null.
     unsafe { destroy(pipeline, |pipeline| pipeline.0.home()) }
 }
 

@@ -1,7 +1,7 @@
 //! What is asked, as a plain struct of C.
 
 use super::{Failure, Status, answer, check_place, check_size, flag, out_of_range};
-use crate::settings::{Edges, Order, Search, Settings};
+use crate::settings::{Edges, Order, Planning, Search, Settings};
 
 /// edges: nothing is outside the map.
 pub const VARIKERNEL_EDGES_ZERO: u32 = 0;
@@ -18,8 +18,8 @@ pub const VARIKERNEL_ORDER_FORWARD: u32 = 1;
 /// order: halving 1 to MR.
 pub const VARIKERNEL_ORDER_BINARY: u32 = 2;
 
-/// order: chosen for each frame by the photons of the ones before, without waiting. Memory grows when an order is first
-/// used.
+/// order: chosen for each frame by the photons of the ones before, without waiting. Memory grows when an
+/// order is first used.
 pub const VARIKERNEL_ORDER_ADAPTIVE: u32 = 3;
 
 /// What is asked of a pipeline. Fill it with varikernel_settings_default, then change what you like.
@@ -40,7 +40,7 @@ pub struct PlainSettings {
     pub order: u32,
     /// 1 for a texture that marks the pixels that found too few photons within MR, else 0. Default 0.
     pub limited_mask: u32,
-    /// 1 if each frame brings a mask of the pixels that need a radius, else 0. Default 0.
+    /// 1 if frames may bring a mask of the pixels that need a radius, else 0. Default 0.
     pub masked: u32,
 }
 
@@ -76,24 +76,24 @@ pub unsafe extern "C" fn varikernel_settings_default(settings: *mut PlainSetting
 }
 
 impl PlainSettings {
-    /// The settings, and whether the order is to be chosen frame by frame. Ranges that the library checks are left to it.
-    pub(super) fn read(&self) -> Result<(Settings, bool), Failure> {
+    /// The settings; ranges that the library checks are left to it.
+    pub(super) fn read(&self) -> Result<Settings, Failure> {
         check_size("varikernel_settings", self.struct_size, SIZE)?;
         let edges = read_edges(self.edges)?;
-        let is_adaptive = self.order == VARIKERNEL_ORDER_ADAPTIVE;
-        let order = match self.order {
-            VARIKERNEL_ORDER_BRACKETED | VARIKERNEL_ORDER_ADAPTIVE => Order::Bracketed,
-            VARIKERNEL_ORDER_FORWARD => Order::Forward,
-            VARIKERNEL_ORDER_BINARY => Order::Binary,
+        let (order, planning) = match self.order {
+            VARIKERNEL_ORDER_BRACKETED => (Order::Bracketed, Planning::AsAsked),
+            VARIKERNEL_ORDER_FORWARD => (Order::Forward, Planning::AsAsked),
+            VARIKERNEL_ORDER_BINARY => (Order::Binary, Planning::AsAsked),
+            VARIKERNEL_ORDER_ADAPTIVE => (Order::Bracketed, Planning::EachFrame),
             other => return Err(out_of_range("order", other, "it is one of VARIKERNEL_ORDER_...")),
         };
-        let settings = Settings {
+        Ok(Settings {
             search: Search { min_photons: self.min_photons, max_radius: self.max_radius, edges, order },
             limited_mask: flag("limited_mask", self.limited_mask)?,
             masked: flag("masked", self.masked)?,
+            planning,
             ..Settings::default()
-        };
-        Ok((settings, is_adaptive))
+        })
     }
 }
 

@@ -25,7 +25,7 @@ pub enum Status {
     Setting = 5,
     /// A map is larger than the device's textures.
     TooLarge = 6,
-    /// A texture does not fit: another target, format or size; a mask that is missing or not expected.
+    /// A texture does not fit: another target, format or size; a mask that is not expected.
     Mismatch = 7,
     /// The radii could be wrong, since sums might wrap; nothing was drawn. The text says what would be exact.
     Inexact = 8,
@@ -33,7 +33,8 @@ pub enum Status {
     Shader = 9,
     /// GL_OUT_OF_MEMORY; what was there before is as it was.
     OutOfMemory = 10,
-    /// The driver lost the context, or the host gave it up: destroy the handles, and make all anew in a new context.
+    /// The driver lost the context, or the host gave it up: destroy the handles, and make all anew in a new
+    /// context.
     ContextLost = 11,
     /// Another GL error; the text names it.
     OpenGl = 12,

@@ -6,7 +6,7 @@ use std::ffi::c_char;
 pub const VARIKERNEL_VERSION_MAJOR: u32 = 0;
 
 /// The version of this header, minor part.
-pub const VARIKERNEL_VERSION_MINOR: u32 = 1;
+pub const VARIKERNEL_VERSION_MINOR: u32 = 2;
 
 /// The version of this header, patch part.
 pub const VARIKERNEL_VERSION_PATCH: u32 = 0;
@@ -19,7 +19,7 @@ const _: () = assert!(is_version(env!("CARGO_PKG_VERSION_MAJOR"), VARIKERNEL_VER
 const _: () = assert!(is_version(env!("CARGO_PKG_VERSION_MINOR"), VARIKERNEL_VERSION_MINOR));
 const _: () = assert!(is_version(env!("CARGO_PKG_VERSION_PATCH"), VARIKERNEL_VERSION_PATCH));
 
-/// The version of the library that was loaded, such as "0.1.0"; never null, valid for ever.
+/// The version of the library that was loaded, such as "0.2.0"; never null, valid for ever.
 #[unsafe(no_mangle)]
 pub extern "C" fn varikernel_version() -> *const c_char {
     const TEXT: &str = concat!(env!("CARGO_PKG_VERSION"), "\0");
@@ -28,8 +28,8 @@ pub extern "C" fn varikernel_version() -> *const c_char {
 
 /// Whether the loaded library is what a header of this version describes.
 ///
-/// Call it with VARIKERNEL_VERSION_MAJOR and VARIKERNEL_VERSION_MINOR before anything else. Before version 1.0 both have
-/// to be the library's own.
+/// Call it with VARIKERNEL_VERSION_MAJOR and VARIKERNEL_VERSION_MINOR before anything else. Before version
+/// 1.0 both have to be the library's own.
 #[unsafe(no_mangle)]
 pub extern "C" fn varikernel_is_compatible(major: u32, minor: u32) -> bool {
     (major, minor) == (VARIKERNEL_VERSION_MAJOR, VARIKERNEL_VERSION_MINOR)

@@ -3,6 +3,7 @@
 /// The formats of maps and of what lies between them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub enum TextureFormat {
     /// GL_R32UI: counts, radii.
     R32Uint,

@@ -149,7 +149,7 @@ pub struct Plan {
 pub fn plan(settings: &Settings, size: UVec2, bounds: CountBounds) -> Result<Plan> {
     let faultless = settings.reaching_faults() == Faults::NONE;
     let unclamped = Plan { count_limit: u32::MAX, exact: settings.method.is_exact() && faultless };
-    let inexact = |reason: String, remedy: &str| match settings.exactness {
+    let inexact = |reason: String, remedy: &str| match settings.laboratory.exactness {
         Exactness::Required => Err(Error::Inexact { reason, remedy: remedy.to_owned() }),
         Exactness::Waived => Ok(Plan { exact: false, ..unclamped }),
     };

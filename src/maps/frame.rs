@@ -11,9 +11,10 @@ use crate::maps::Mask;
 pub struct Frame<'a> {
     /// The counts; for [`Changed::Added`], those of the new photons alone.
     pub density: &'a DensityMap,
-    /// The pixels that need a radius: all, or those of a mask.
+    /// The pixels that need a radius: those of a mask, or all.
     ///
-    /// A mask is for pipelines whose settings say [`masked`](crate::Settings::masked).
+    /// A mask is for pipelines whose settings say [`masked`](crate::Settings::masked); it may come with some
+    /// frames and not with others.
     pub mask: Option<&'a Mask>,
     /// Where counts or mask differ from the frame before.
     pub changed: Changed,
@@ -25,10 +26,16 @@ impl<'a> Frame<'a> {
     pub fn new(density: &'a DensityMap) -> Self {
         Self { density, mask: None, changed: Changed::Everything }
     }
+
+    /// Whether there may be pixels that need no radius.
+    pub(crate) fn leaves_out_pixels(&self) -> bool {
+        self.mask.is_some_and(|mask| !mask.is_every_pixel())
+    }
 }
 
 /// Where a frame differs from the one before it, as the host guarantees.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Changed {
     /// Anywhere.
     Everything,

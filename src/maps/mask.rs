@@ -18,6 +18,8 @@ const TESTED: &str = "mask of tested pixels";
 #[derive(Debug)]
 pub struct Mask {
     texture: Texture,
+    /// Whether it is one texel that stands for all pixels of a map, each of which needs a radius.
+    every_pixel: bool,
 }
 
 impl Mask {
@@ -30,7 +32,7 @@ impl Mask {
         let texture = Texture::new(gl, TextureFormat::R8Uint, mask.size(), 1)?.labelled("mask");
         texture.upload(mask);
         gl.check("uploading a mask")?;
-        Ok(Self { texture })
+        Ok(Self { texture, every_pixel: false })
     }
 
     /// Uses a texture that the host owns and keeps alive as long as this; its contents may change between
@@ -49,7 +51,24 @@ impl Mask {
                 got: texture.format().name().to_owned(),
             });
         }
-        Ok(Self { texture })
+        Ok(Self { texture, every_pixel: false })
+    }
+
+    /// One texel for all pixels, whatever the map's size: what is bound where a frame has no mask.
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`].
+    pub(crate) fn of_every_pixel(gl: &Gl) -> Result<Self> {
+        let mask = Self::upload(gl, &Image::filled(UVec2::ONE, 1))?;
+        Ok(Self { every_pixel: true, ..mask })
+    }
+
+    /// The bytes of [`of_every_pixel`](Self::of_every_pixel).
+    pub(crate) const BYTES_OF_EVERY_PIXEL: u64 = 1;
+
+    /// Whether it was made by [`of_every_pixel`](Self::of_every_pixel).
+    pub(crate) fn is_every_pixel(&self) -> bool {
+        self.every_pixel
     }
 
     /// Columns and rows.

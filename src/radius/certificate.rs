@@ -1,13 +1,15 @@
 //! A radius map proves itself: no reference, no second search, nothing read back but two numbers.
 //!
-//! Counts never shrink as a box grows, and neither does the share that the scaled test asks for. So R is the smallest
-//! radius whose box holds enough if, and only if, the box of R does (or R is MR) and that of R - 1 does not (or R is
-//! 1): two boxes a pixel. Both are counted in the summed-area table, which is proved as well: it is the table of the
-//! counts if each count is the sum that the table gives for that one pixel, modulo 2^32 or 2^16 where entries wrap.
-//! [`exactness`] says that the boxes themselves do not. Together, the density map alone proves radii and table.
+//! Counts never shrink as a box grows, and neither does the share that the scaled test asks for. So R is the
+//! smallest radius whose box holds enough if, and only if, the box of R does (or R is MR) and that of R - 1
+//! does not (or R is 1): two boxes a pixel. Both are counted in the summed-area table, which is proved as
+//! well: it is the table of the counts if each count is the sum that the table gives for that one pixel,
+//! modulo 2^32 or 2^16 where entries wrap. [`exactness`] says that the boxes themselves do not. Together, the
+//! density map alone proves radii and table.
 //!
-//! - Cost: two passes and a wait for their result. Radii: 8 fetches of the table and 1 of the radius a pixel, 2.2 probe
-//!   passes on llvmpipe at 1024², whatever the map, MR and edge rule. Table: 5 fetches, 1.2 probe passes.
+//! - Cost: two passes and a wait for their result. Radii: 8 fetches of the table and 1 of the radius a pixel,
+//!   2.2 probe passes on llvmpipe at 1024², whatever the map, MR and edge rule. Table: 5 fetches, 1.2 probe
+//!   passes.
 //! - Memory: one byte a pixel, allocated with the first proof.
 //! - Proved pixels are discarded, and a GL_SAMPLES_PASSED query counts the others.
 
@@ -20,7 +22,7 @@ use crate::gl::{
 use crate::maps::exactness::{self, Plan};
 use crate::maps::{DensityMap, RadiusMap};
 use crate::radius::tables::{self, Tables};
-use crate::settings::{Edges, Exactness, Faults, Method, Settings};
+use crate::settings::{Edges, Exactness, Faults, Laboratory, Method, Settings};
 
 const RADII: &str = "certify radii";
 const ENTRIES: &str = "certify entries";
@@ -31,8 +33,8 @@ const ENTRIES: &str = "certify entries";
 pub struct Certificate {
     /// Pixels whose radius is not proved, or whose place in the mask of limited pixels.
     pub unproved_radii: u64,
-    /// Pixels whose count is not what the summed-area table gives for them. A single wrong entry shows in up to four,
-    /// itself and those after it; with none, all entries are right.
+    /// Pixels whose count is not what the summed-area table gives for them. A single wrong entry shows in up
+    /// to four, itself and those after it; with none, all entries are right.
     pub wrong_entries: u64,
 }
 
@@ -46,14 +48,15 @@ impl Certificate {
     /// Refuses settings whose results are not proved by this.
     ///
     /// # Errors
-    /// [`Error::Setting`] for other methods than the summed-area table, whose boxes cost the same at any radius.
+    /// [`Error::Setting`] for other methods than the summed-area table, whose boxes cost the same at any
+    /// radius.
     pub fn check_possible(settings: &Settings) -> Result<()> {
         if settings.method == Method::SummedAreaTable {
             return Ok(());
         }
         Err(Error::Setting {
             name: "method",
-            value: format!("{:?}", settings.method),
+            value: settings.method.name().to_owned(),
             reason: "two boxes in a summed-area table certify a radius; choose that method, or certify the map by a \
                      pipeline of it"
                 .to_owned(),
@@ -65,7 +68,8 @@ impl Certificate {
     /// # Errors
     /// [`Error::Inexact`] if a sum could round or wrap, whether or not the settings waive that.
     pub(crate) fn plan(settings: &Settings, density: &DensityMap) -> Result<Plan> {
-        let settings = Settings { exactness: Exactness::Required, ..faultless(settings) };
+        let mut settings = faultless(settings);
+        settings.laboratory.exactness = Exactness::Required;
         exactness::plan(&settings, density.size(), density.bounds())
     }
 }
@@ -197,5 +201,8 @@ fn entries_source(density: TextureFormat, settings: &Settings) -> ShaderSource {
 
 /// The same question, counted as it is meant.
 fn faultless(settings: &Settings) -> Settings {
-    Settings { faults: Faults::NONE, variation: None, ..*settings }
+    Settings {
+        laboratory: Laboratory { faults: Faults::NONE, variation: None, ..settings.laboratory },
+        ..*settings
+    }
 }

@@ -4,14 +4,15 @@
 //!
 //! - a table built by a scan costs less than one by doubling at every size, 3 to 6 copies against 8 to 34;
 //! - a forward search costs about 0.9 for each radius that it tries, 1.5 to 2 where all are 1;
-//! - a bracketed search costs about 2 where photons are dense, 2.7 elsewhere, and half as much again where scaled edges
-//!   are near;
-//! - a binary search costs log2 MR, and in maps of up to 128², which fit the processor's cache, three quarters or less
-//!   of that, while the bracketed search's ten draws cost more there.
+//! - a bracketed search costs about 2 where photons are dense, 2.7 elsewhere, and half as much again where
+//!   scaled edges are near;
+//! - a binary search costs log2 MR, and in maps of up to 128², which fit the processor's cache, three
+//!   quarters or less of that, while the bracketed search's ten draws cost more there.
 //!
-//! Brute force wins only below 128², where all radii are 1, by an eighth; pyramids never do. So the choice is one of three
-//! searches in one table. How long a forward search takes is told by the photons of each tile: in a tile with c photons in
-//! an area a, a box of radius r holds n where (2 r + 1)² c = n a, on the average.
+//! Brute force wins only below 128², where all radii are 1, by an eighth; pyramids never do. So the decision
+//! is for one of three searches in one table. How long a forward search takes is told by the photons of each
+//! tile: in a tile with c photons in an area a, a box of radius r holds n where (2 r + 1)² c = n a, on the
+//! average.
 
 use std::fmt::Write as _;
 
@@ -19,12 +20,12 @@ use glam::UVec2;
 
 use super::census::{Census, tiles};
 use crate::maps::exactness::{self, CountBounds};
-use crate::settings::{Edges, Order, Search, Settings};
+use crate::settings::{Edges, Laboratory, Order, Search, Settings};
 
-/// Settings and why they were chosen.
+/// The decision of the planner, and why.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
-pub struct Choice {
+pub struct Decision {
     /// The settings asked for, with method, build and order of the search filled in.
     pub settings: Settings,
     /// A sentence with the figures that decided.
@@ -34,19 +35,27 @@ pub struct Choice {
 /// The most pixels of a map that a processor's cache holds with its table.
 const SMALL: u32 = 128 * 128;
 
-/// Chooses method, build and order for a map of `map_size` with counts within `bounds`; `census` tells of the map or of
-/// one much like it, as that of the frame before.
+/// Decides on method, build and order for a map of `map_size` with counts within `bounds`; `census` tells of
+/// the map or of one much like it, as that of the frame before.
 ///
 /// The question (n, MR, edges) and all that does not decide speed stay as they are in `settings`.
 #[must_use]
-pub fn choose(settings: &Settings, map_size: UVec2, census: Option<&Census>, bounds: CountBounds) -> Choice {
+pub fn decide(
+    settings: &Settings,
+    map_size: UVec2,
+    census: Option<&Census>,
+    bounds: CountBounds,
+) -> Decision {
     let usual = Settings::default();
     let in_order = |order| Settings {
         search: Search { order, ..settings.search },
         method: usual.method,
-        sat_build: usual.sat_build,
         storage: usual.storage,
-        variation: None,
+        laboratory: Laboratory {
+            sat_build: usual.laboratory.sat_build,
+            variation: None,
+            ..settings.laboratory
+        },
         ..*settings
     };
     let is_exact = |order| exactness::plan(&in_order(order), map_size, bounds).is_ok();
@@ -63,7 +72,7 @@ pub fn choose(settings: &Settings, map_size: UVec2, census: Option<&Census>, bou
         Some(census) => cheapest(settings.search, map_size, census),
     };
     tracing::debug!(?order, reason, "planned");
-    Choice { settings: in_order(order), reason }
+    Decision { settings: in_order(order), reason }
 }
 
 /// The order that costs least, in probe passes, by the figures at the head of this file.
@@ -99,7 +108,7 @@ mod tests {
     fn order_of(density: &Image<u32>, max_radius: u32) -> Order {
         let usual = Settings::default();
         let settings = Settings { search: Search { max_radius, ..usual.search }, ..usual };
-        choose(
+        decide(
             &settings,
             density.size(),
             Some(&Census::of(density)),
@@ -131,10 +140,10 @@ mod tests {
     }
 
     #[test]
-    fn without_a_census_the_choice_is_the_one_that_never_costs_much() {
-        let choice = choose(&Settings::thesis(), UVec2::splat(512), None, CountBounds::UNKNOWN);
-        assert_eq!(choice.settings.search.order, Order::Bracketed);
-        choice.settings.validate().expect("possible settings");
+    fn without_a_census_the_decision_is_the_one_that_never_costs_much() {
+        let decision = decide(&Settings::thesis(), UVec2::splat(512), None, CountBounds::UNKNOWN);
+        assert_eq!(decision.settings.search.order, Order::Bracketed);
+        decision.settings.validate().expect("possible settings");
     }
 
     #[test]
@@ -144,7 +153,7 @@ mod tests {
         let usual = Settings::default();
         let search = Search { min_photons: 2_000_000, max_radius: 10, ..usual.search };
         let bounds = CountBounds::of(&full, search);
-        let choice = choose(&Settings { search, ..usual }, full.size(), Some(&Census::of(&full)), bounds);
-        assert_eq!(choice.settings.search.order, Order::Binary, "{}", choice.reason);
+        let decision = decide(&Settings { search, ..usual }, full.size(), Some(&Census::of(&full)), bounds);
+        assert_eq!(decision.settings.search.order, Order::Binary, "{}", decision.reason);
     }
 }

@@ -10,14 +10,15 @@ use super::{Edges, Method, SatBuild, SatSamples, Settings, Split};
 pub struct Faults {
     /// Listing 4.2, sampling: coordinates are clamped to 0..63 whatever the map's size.
     pub clamp_to_63: bool,
-    /// Listing 4.2, sampling: `ll.x > 0` where `>= 0` is meant, so that boxes from column or row 1 count 0 as well.
+    /// Listing 4.2, sampling: `ll.x > 0` where `>= 0` is meant, so that boxes from column or row 1 count 0 as
+    /// well.
     pub border_test: bool,
     /// Listing 4.2, sampling: the lower left is added back unless *both* coordinates are outside.
     pub corner_test: bool,
     /// Listing 4.2, generation: horizontal passes move along y and vertical ones along x.
     pub swapped_axes: bool,
-    /// Listing 4.2, generation with more than 2 samples: the first offset stays a power of two, one sample too many is
-    /// added, and always along x.
+    /// Listing 4.2, generation with more than 2 samples: the first offset stays a power of two, one sample
+    /// too many is added, and always along x.
     pub sample_stride: bool,
     /// First listing of 4.3: with one odd coordinate, a strip in the other direction alone is forgotten.
     pub forgotten_strip: bool,
@@ -60,18 +61,20 @@ impl Settings {
     #[must_use]
     pub fn reaching_faults(&self) -> Faults {
         let in_table = self.method == Method::SummedAreaTable;
-        let in_doubling = in_table && self.sat_build == SatBuild::Doubling;
-        let faults = self.faults;
+        let in_doubling = in_table && self.laboratory.sat_build == SatBuild::Doubling;
+        let faults = self.laboratory.faults;
         Faults {
             clamp_to_63: faults.clamp_to_63 && in_table,
             border_test: faults.border_test && in_table,
             corner_test: faults.corner_test && in_table,
             swapped_axes: faults.swapped_axes && in_doubling,
             // The listing for 2 samples is right; its extension to more is not.
-            sample_stride: faults.sample_stride && in_doubling && self.sat_samples > SatSamples::Two,
+            sample_stride: faults.sample_stride
+                && in_doubling
+                && self.laboratory.sat_samples > SatSamples::Two,
             forgotten_strip: faults.forgotten_strip
                 && matches!(self.method, Method::Pyramid | Method::AveragedMipmap)
-                && self.split == Split::Odd,
+                && self.laboratory.split == Split::Odd,
             float_ratio: faults.float_ratio && self.search.edges == Edges::Scale,
         }
     }

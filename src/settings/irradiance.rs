@@ -24,7 +24,8 @@ pub enum Estimate {
 pub struct IrradianceSettings {
     /// Where the radius of each kernel comes from.
     pub radius: RadiusChoice,
-    /// How radii are searched, if they are variable; MR goes up to [`MAX_PICTURE_RADIUS`], and there is no mask.
+    /// How radii are searched, if they are variable; MR goes up to [`MAX_PICTURE_RADIUS`], and there is no
+    /// mask.
     #[cfg_attr(feature = "serde", serde(rename = "search"))]
     pub radii: Settings,
     /// The falloff.

@@ -1,6 +1,7 @@
 //! How photons are spread: the kernel, and where its radius comes from.
 
-/// The largest radius of a kernel, in pixels: its disc then still fits the loops that every renderer finishes.
+/// The largest radius of a kernel, in pixels: its disc then still fits the loops that every renderer
+/// finishes.
 pub const MAX_PICTURE_RADIUS: u32 = 96;
 
 /// How a photon's power falls off from the middle of its disc to the edge (thesis 2.6.2); unit energy always.
@@ -9,6 +10,7 @@ pub const MAX_PICTURE_RADIUS: u32 = 96;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
+#[non_exhaustive]
 pub enum Kernel {
     /// 1: the same everywhere on the disc.
     Box,
@@ -26,7 +28,8 @@ impl Kernel {
     /// All of them.
     pub const ALL: [Self; 5] = [Self::Box, Self::Cone, Self::Epanechnikov, Self::Silverman, Self::Gaussian];
 
-    /// The weight for the square of the distance from the middle, in radii; 1 in the middle, 0 from the edge on.
+    /// The weight for the square of the distance from the middle, in radii; 1 in the middle, 0 from the edge
+    /// on.
     #[must_use]
     pub fn profile(self, squared: f64) -> f64 {
         if squared >= 1.0 {

@@ -23,8 +23,8 @@ pub enum FirstBounce {
 pub enum DirectLight {
     /// By shadow rays on the CPU, to other places of the lights from each pixel.
     Traced,
-    /// By shadow maps on the GPU (thesis 2.2), around places of the lights that are the same for all pixels; what is seen in
-    /// mirrors and through glass is traced all the same.
+    /// By shadow maps on the GPU (thesis 2.2), around places of the lights that are the same for all pixels;
+    /// what is seen in mirrors and through glass is traced all the same.
     ShadowMap,
 }
 
@@ -49,7 +49,8 @@ pub struct PictureSettings {
     pub estimate: Estimate,
     /// Shadow rays or shadow maps.
     pub direct: DirectLight,
-    /// Shadow rays of each pixel, or cubes of shadow maps, for each area light; a square number is best, at least 1.
+    /// Shadow rays of each pixel, or cubes of shadow maps, for each area light; a square number is best, at
+    /// least 1.
     pub light_samples: u32,
     /// The seed of the places on the lights.
     pub seed: u64,
@@ -58,8 +59,8 @@ pub struct PictureSettings {
 impl Default for PictureSettings {
     /// 512 x 512 pixels, n = 400, MR = 64, splatted with Silverman's kernel, 16 shadow rays.
     ///
-    /// Of n = 50, 200, 400 and 800, 400 has the least RMSE and 800 the least relative MSE in the glass Cornell box (256 x 256
-    /// pixels, 400,000 photons, a reference of 16 seeds); other scenes were not tried.
+    /// Of n = 50, 200, 400 and 800, 400 has the least RMSE and 800 the least relative MSE in the glass
+    /// Cornell box (256 x 256 pixels, 400,000 photons, a reference of 16 seeds); other scenes were not tried.
     fn default() -> Self {
         Self {
             size: UVec2::splat(512),
@@ -77,8 +78,8 @@ impl Default for PictureSettings {
 }
 
 impl PictureSettings {
-    /// What the light from photons depends on, as [`IrradiancePipeline`](crate::IrradiancePipeline) takes it, with the pixels
-    /// that even MR does not satisfy marked.
+    /// What the light from photons depends on, as [`IrradiancePipeline`](crate::IrradiancePipeline) takes it,
+    /// with the pixels that even MR does not satisfy marked.
     #[must_use]
     pub fn irradiance(&self) -> IrradianceSettings {
         let usual = Settings::default();

@@ -1,16 +1,13 @@
 //! Which settings go together.
 
-use super::{Faults, MAX_RADIUS_LIMIT, Method, Order, SatBuild, Search, Settings, Storage, Variation};
+use super::{Faults, Laboratory, MAX_RADIUS_LIMIT, Method, Order, SatBuild, Search, Settings, Variation};
 use crate::error::{Error, Result};
 
 /// The largest [`Search::max_radius`] of the naive mipmap, whose blocks have up to four times that side.
 const NAIVE_MAX_RADIUS: u32 = 16_384;
 
-impl Storage {
-    /// Whether only the summed-area table, without the listings' faults, is kept in it.
-    fn is_for_tables_alone(self) -> bool {
-        !matches!(self, Self::F32 | Self::U32)
-    }
+fn refuse(name: &'static str, value: impl Into<String>, reason: impl Into<String>) -> Result<()> {
+    Err(Error::Setting { name, value: value.into(), reason: reason.into() })
 }
 
 impl Settings {
@@ -19,85 +16,84 @@ impl Settings {
     /// # Errors
     /// [`Error::Setting`] with the field's name.
     pub fn validate(&self) -> Result<()> {
+        self.validate_question()?;
+        self.validate_storage()?;
+        self.validate_order()?;
+        self.laboratory.variation.map_or(Ok(()), |variation| self.validate_variation(variation))
+    }
+
+    fn validate_question(&self) -> Result<()> {
         let Search { min_photons, max_radius, .. } = self.search;
         if min_photons == 0 {
-            return Err(Error::Setting {
-                name: "min_photons",
-                value: "0".to_owned(),
-                reason: "every box holds 0 photons; ask for at least 1".to_owned(),
-            });
+            return refuse("min_photons", "0", "it is at least 1, since every box holds 0 photons");
         }
         if max_radius == 0 || max_radius > MAX_RADIUS_LIMIT {
-            return Err(Error::Setting {
-                name: "max_radius",
-                value: max_radius.to_string(),
-                reason: format!(
+            return refuse(
+                "max_radius",
+                max_radius.to_string(),
+                format!(
                     "it goes from 1, where the search starts, to {MAX_RADIUS_LIMIT}, where the area (2 MR + 1)² \
                      still fits 32 bits"
                 ),
-            });
+            );
         }
         if self.method == Method::NaiveMipmap && max_radius > NAIVE_MAX_RADIUS {
-            return Err(Error::Setting {
-                name: "max_radius",
-                value: max_radius.to_string(),
-                reason: format!(
+            return refuse(
+                "max_radius",
+                max_radius.to_string(),
+                format!(
                     "the naive mipmap goes up to {NAIVE_MAX_RADIUS}: the area of its last block must fit 32 bits"
                 ),
-            });
+            );
         }
-        if self.sat_build == SatBuild::Scan
-            && !self.storage.is_integer()
-            && self.method == Method::SummedAreaTable
-        {
-            return Err(Error::Setting {
-                name: "sat_build",
-                value: "scan".to_owned(),
-                reason: "a scan adds integers; keep the sums in u32, or build by doubling".to_owned(),
-            });
+        Ok(())
+    }
+
+    fn validate_storage(&self) -> Result<()> {
+        let Laboratory { sat_build, faults, .. } = self.laboratory;
+        let is_table = self.method == Method::SummedAreaTable;
+        if sat_build == SatBuild::Scan && !self.storage.is_integer() && is_table {
+            return refuse(
+                "sat_build",
+                sat_build.name(),
+                "a scan adds integers; keep the sums in u32, or build by doubling",
+            );
         }
-        if self.storage.is_for_tables_alone() {
-            let refuse = |reason: &str| {
-                let value = self.storage.name().to_owned();
-                Err(Error::Setting { name: "storage", value, reason: reason.to_owned() })
-            };
-            if self.method != Method::SummedAreaTable {
-                return refuse("only the summed-area table is kept in it; keep the sums in u32 or f32");
+        let refuse = |reason| refuse("storage", self.storage.name(), reason);
+        match self.storage.is_for_tables_alone() {
+            true if !is_table => {
+                refuse("only the summed-area table is kept in it; keep the sums in u32 or f32")
             }
-            if self.faults != Faults::NONE {
-                return refuse("the listings keep plain sums; run them in u32 or f32");
-            }
+            true if faults != Faults::NONE => refuse("the listings keep plain sums; run them in u32 or f32"),
+            _ => Ok(()),
         }
-        if self.search.order == Order::Bracketed {
-            let refuse = |reason: &str| {
-                Err(Error::Setting {
-                    name: "search",
-                    value: "bracketed".to_owned(),
-                    reason: reason.to_owned(),
-                })
-            };
-            if self.method != Method::SummedAreaTable {
-                return refuse(
-                    "it counts boxes of many shapes, which only the summed-area table does at one price",
-                );
+    }
+
+    fn validate_order(&self) -> Result<()> {
+        let order = self.search.order;
+        let refuse = |reason| refuse("order", order.name(), reason);
+        match order {
+            Order::Bracketed if self.method != Method::SummedAreaTable => refuse(
+                "only the summed-area table counts boxes of all shapes at one price; choose that method",
+            ),
+            Order::Bracketed if self.laboratory.faults != Faults::NONE => {
+                refuse("its bounds hold without the faults of the listings alone; search in binary order")
             }
-            if self.faults != Faults::NONE {
-                return refuse("its bounds hold for the listings without their faults");
-            }
+            _ => Ok(()),
         }
-        if let Some(variation) = self.variation {
-            let refuse = |reason: String| {
-                Err(Error::Setting { name: "variation", value: format!("{variation:?}"), reason })
-            };
-            if self.method != variation.method() {
-                return refuse(format!("it varies {:?}, not {:?}", variation.method(), self.method));
-            }
-            if variation == Variation::ReusedSums && self.search.order != Order::Forward {
-                return refuse("only a forward search grows the box that it has summed".to_owned());
-            }
-            if self.faults != Faults::NONE {
-                return refuse("it varies the method without the thesis's faults".to_owned());
-            }
+    }
+
+    fn validate_variation(&self, variation: Variation) -> Result<()> {
+        let refuse = |reason: String| refuse("variation", variation.name(), reason);
+        let (varied, method) = (variation.method(), self.method);
+        if method != varied {
+            return refuse(format!("it varies the method {}, not {}", varied.name(), method.name()));
+        }
+        if variation == Variation::ReusedSums && self.search.order != Order::Forward {
+            return refuse("it is for a forward search, which grows the box that it has summed".to_owned());
+        }
+        if self.laboratory.faults != Faults::NONE {
+            return refuse("it varies the method without the faults of the listings".to_owned());
         }
         Ok(())
     }

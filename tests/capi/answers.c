@@ -49,7 +49,7 @@ static void frames(varikernel_pipeline *pipeline, GLuint density) {
     EXPECT_OK(varikernel_frame_default(&frame, sizeof frame));
     frame.density_texture = density;
     frame.photons_at_most = 1;
-    EXPECT_OK(varikernel_render(pipeline, &frame, &radii, &limited));
+    EXPECT_OK(varikernel_pipeline_render(pipeline, &frame, &radii, &limited));
     EXPECT_TRUE(holds_radii(radii, first_radii));
     EXPECT_TRUE(holds_bytes(limited, first_limited));
     EXPECT_TRUE(!holds_radii(radii, both_radii) && !holds_bytes(limited, both_photons));
@@ -58,24 +58,24 @@ static void frames(varikernel_pipeline *pipeline, GLuint density) {
     put_bytes(density, SIDE, SIDE, both_photons[0]);
     frame.photons_at_most = 2;
     frame.changed = VARIKERNEL_CHANGED_NOTHING;
-    EXPECT_OK(varikernel_render(pipeline, &frame, &radii, &limited));
+    EXPECT_OK(varikernel_pipeline_render(pipeline, &frame, &radii, &limited));
     EXPECT_TRUE(holds_radii(radii, first_radii));
     frame.changed = VARIKERNEL_CHANGED_RECTANGLE;
     frame.changed_x = 5;
     frame.changed_y = 4;
     frame.changed_width = frame.changed_height = 1;
-    EXPECT_OK(varikernel_render(pipeline, &frame, &radii, &limited));
+    EXPECT_OK(varikernel_pipeline_render(pipeline, &frame, &radii, &limited));
     EXPECT_TRUE(holds_radii(radii, both_radii));
 
     /* From the first photon alone, the second is added. */
     put_bytes(density, SIDE, SIDE, first_photon[0]);
     frame.changed = VARIKERNEL_CHANGED_EVERYTHING;
-    EXPECT_OK(varikernel_render(pipeline, &frame, &radii, &limited));
+    EXPECT_OK(varikernel_pipeline_render(pipeline, &frame, &radii, &limited));
     EXPECT_TRUE(holds_radii(radii, first_radii));
     frame.density_texture = second;
     frame.photons_at_most = 1;
     frame.changed = VARIKERNEL_CHANGED_ADDED;
-    EXPECT_OK(varikernel_render(pipeline, &frame, &radii, &limited));
+    EXPECT_OK(varikernel_pipeline_render(pipeline, &frame, &radii, &limited));
     EXPECT_TRUE(holds_radii(radii, both_radii));
     glDeleteTextures(1, &second);
 }
@@ -90,12 +90,20 @@ static void masked_frame(const varikernel_context *context, varikernel_settings 
     EXPECT_OK(varikernel_frame_default(&frame, sizeof frame));
     frame.density_texture = density;
     frame.mask_texture = mask;
-    EXPECT_OK(varikernel_render(pipeline, &frame, &radii, NULL));
+    EXPECT_OK(varikernel_pipeline_render(pipeline, &frame, &radii, NULL));
     glBindTexture(GL_TEXTURE_2D, radii);
     glGetTexImage(GL_TEXTURE_2D, 0, GL_RED_INTEGER, GL_UNSIGNED_INT, found);
     glBindTexture(GL_TEXTURE_2D, 0);
     EXPECT_TRUE(memcmp(found[0], zeros, sizeof zeros) == 0);
     EXPECT_TRUE(memcmp(found[1], first_radii[1], sizeof found - sizeof zeros) == 0);
+    /* The next frame has none, whatever it says of what changed. */
+    frame.mask_texture = 0;
+    frame.changed = VARIKERNEL_CHANGED_NOTHING;
+    EXPECT_OK(varikernel_pipeline_render(pipeline, &frame, &radii, NULL));
+    glBindTexture(GL_TEXTURE_2D, radii);
+    glGetTexImage(GL_TEXTURE_2D, 0, GL_RED_INTEGER, GL_UNSIGNED_INT, found);
+    glBindTexture(GL_TEXTURE_2D, 0);
+    EXPECT_TRUE(memcmp(found, first_radii, sizeof found) == 0);
     EXPECT_OK(varikernel_pipeline_destroy(pipeline));
     glDeleteTextures(1, &mask);
 }
@@ -107,7 +115,7 @@ static void left_state(varikernel_pipeline *pipeline, GLuint density, uint32_t s
     EXPECT_OK(varikernel_frame_default(&frame, sizeof frame));
     frame.density_texture = density;
     glEnable(GL_CULL_FACE);
-    EXPECT_OK(varikernel_render(pipeline, &frame, &radii, NULL));
+    EXPECT_OK(varikernel_pipeline_render(pipeline, &frame, &radii, NULL));
     EXPECT_TRUE(glIsEnabled(GL_CULL_FACE) == (state_policy == VARIKERNEL_STATE_RESTORE));
     glDisable(GL_CULL_FACE);
 }
@@ -134,7 +142,7 @@ static void all_orders(uint32_t state_policy) {
         uint64_t at_creation = 0, at_most = 0;
         varikernel_pipeline *pipeline = NULL;
         settings.order = order;
-        EXPECT_OK(varikernel_memory_required(context, SIDE, SIDE, &settings, &at_creation, &at_most));
+        EXPECT_OK(varikernel_pipeline_memory_required(context, SIDE, SIDE, &settings, &at_creation, &at_most));
         EXPECT_TRUE(held(context) == before && at_creation < at_most);
         EXPECT_OK(varikernel_pipeline_create(context, SIDE, SIDE, GL_R8UI, &settings, &pipeline));
         EXPECT_TRUE(held(context) == before + at_creation);

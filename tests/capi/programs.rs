@@ -93,7 +93,7 @@ fn the_library_exports_what_the_header_declares_and_nothing_else() {
     let exported: BTreeSet<_> = exported.lines().filter_map(|line| line.rsplit(' ').next()).collect();
     assert_eq!(exported, declared);
     assert!(
-        declared.contains("varikernel_render") && declared.len() >= 19,
+        declared.contains("varikernel_pipeline_render") && declared.len() >= 19,
         "the header is read: {declared:?}"
     );
 }

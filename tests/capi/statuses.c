@@ -32,16 +32,16 @@ static varikernel_status make(uint32_t width, uint32_t height, uint32_t format) 
 /* Renders; a call that fails writes no name. */
 static varikernel_status render(void) {
     GLuint found = 12345;
-    varikernel_status status = varikernel_render(pipeline, &frame, &found, NULL);
+    varikernel_status status = varikernel_pipeline_render(pipeline, &frame, &found, NULL);
     EXPECT_TRUE((found != 12345) == (status == VARIKERNEL_STATUS_OK));
     radii = status == VARIKERNEL_STATUS_OK ? found : radii;
     return status;
 }
 
 static void a_planted_difference_is_seen(void) {
-    EXPECT_TRUE(is_expected(varikernel_render(NULL, NULL, NULL, NULL), VARIKERNEL_STATUS_INVALID_ARGUMENT, "null"));
-    EXPECT_TRUE(!is_expected(varikernel_render(NULL, NULL, NULL, NULL), VARIKERNEL_STATUS_SETTING, "null"));
-    EXPECT_TRUE(!is_expected(varikernel_render(NULL, NULL, NULL, NULL), VARIKERNEL_STATUS_INVALID_ARGUMENT, "zzz"));
+    EXPECT_TRUE(is_expected(varikernel_pipeline_render(NULL, NULL, NULL, NULL), VARIKERNEL_STATUS_INVALID_ARGUMENT, "null"));
+    EXPECT_TRUE(!is_expected(varikernel_pipeline_render(NULL, NULL, NULL, NULL), VARIKERNEL_STATUS_SETTING, "null"));
+    EXPECT_TRUE(!is_expected(varikernel_pipeline_render(NULL, NULL, NULL, NULL), VARIKERNEL_STATUS_INVALID_ARGUMENT, "zzz"));
 }
 
 static void versions(void) {
@@ -108,10 +108,10 @@ static void wrong_frames(void) {
     EXPECT_OK(varikernel_frame_default(&frame, sizeof frame));
     EXPECT(render(), VARIKERNEL_STATUS_INVALID_ARGUMENT, "density_texture is null");
     frame.density_texture = density;
-    EXPECT(varikernel_render(NULL, &frame, &none, NULL), VARIKERNEL_STATUS_INVALID_ARGUMENT, "pipeline is null");
-    EXPECT(varikernel_render(pipeline, NULL, &none, NULL), VARIKERNEL_STATUS_INVALID_ARGUMENT, "frame is null");
-    EXPECT(varikernel_render(pipeline, &frame, NULL, NULL), VARIKERNEL_STATUS_INVALID_ARGUMENT, "radius_texture is null");
-    EXPECT_OK(varikernel_render(pipeline, &frame, &radii, &none));
+    EXPECT(varikernel_pipeline_render(NULL, &frame, &none, NULL), VARIKERNEL_STATUS_INVALID_ARGUMENT, "pipeline is null");
+    EXPECT(varikernel_pipeline_render(pipeline, NULL, &none, NULL), VARIKERNEL_STATUS_INVALID_ARGUMENT, "frame is null");
+    EXPECT(varikernel_pipeline_render(pipeline, &frame, NULL, NULL), VARIKERNEL_STATUS_INVALID_ARGUMENT, "radius_texture is null");
+    EXPECT_OK(varikernel_pipeline_render(pipeline, &frame, &radii, &none));
     EXPECT_TRUE(none == 0 && glIsTexture(radii));
 
     glGenTextures(1, &colours);
@@ -148,16 +148,6 @@ static void wrong_frames(void) {
         EXPECT_OK(render());
         EXPECT_OK(varikernel_pipeline_destroy(pipeline));
         settings = usual;
-        pipeline = usual_pipeline;
-    }
-    /* Without a mask that was announced. */
-    {
-        varikernel_pipeline *usual_pipeline = pipeline;
-        settings.masked = 1;
-        EXPECT_OK(varikernel_pipeline_create(context, SIDE, SIDE, GL_R8UI, &settings, &pipeline));
-        EXPECT(render(), VARIKERNEL_STATUS_MISMATCH, "mask");
-        EXPECT_OK(varikernel_pipeline_destroy(pipeline));
-        settings.masked = 0;
         pipeline = usual_pipeline;
     }
     EXPECT_TRUE(glGetError() == GL_NO_ERROR);
@@ -197,14 +187,14 @@ static void wrong_sizes(void) {
 static void wrong_memory(void) {
     uint64_t bytes = 12345;
     settings.order = VARIKERNEL_ORDER_BRACKETED;
-    EXPECT(varikernel_memory_required(NULL, SIDE, SIDE, NULL, &bytes, NULL), VARIKERNEL_STATUS_INVALID_ARGUMENT,
+    EXPECT(varikernel_pipeline_memory_required(NULL, SIDE, SIDE, NULL, &bytes, NULL), VARIKERNEL_STATUS_INVALID_ARGUMENT,
            "context is null");
-    EXPECT(varikernel_memory_required(context, SIDE, SIDE, NULL, NULL, &bytes), VARIKERNEL_STATUS_INVALID_ARGUMENT,
+    EXPECT(varikernel_pipeline_memory_required(context, SIDE, SIDE, NULL, NULL, &bytes), VARIKERNEL_STATUS_INVALID_ARGUMENT,
            "at_creation is null");
-    EXPECT(varikernel_memory_required(context, 1u << 20, SIDE, NULL, &bytes, NULL), VARIKERNEL_STATUS_TOO_LARGE, "1048576");
-    EXPECT(varikernel_memory_required(context, 0, SIDE, NULL, &bytes, NULL), VARIKERNEL_STATUS_SETTING, "size");
+    EXPECT(varikernel_pipeline_memory_required(context, 1u << 20, SIDE, NULL, &bytes, NULL), VARIKERNEL_STATUS_TOO_LARGE, "1048576");
+    EXPECT(varikernel_pipeline_memory_required(context, 0, SIDE, NULL, &bytes, NULL), VARIKERNEL_STATUS_SETTING, "size");
     settings.max_radius = 0;
-    EXPECT(varikernel_memory_required(context, SIDE, SIDE, &settings, &bytes, NULL), VARIKERNEL_STATUS_SETTING, "max_radius");
+    EXPECT(varikernel_pipeline_memory_required(context, SIDE, SIDE, &settings, &bytes, NULL), VARIKERNEL_STATUS_SETTING, "max_radius");
     settings.max_radius = 32;
     EXPECT(varikernel_memory_held(NULL, &bytes), VARIKERNEL_STATUS_INVALID_ARGUMENT, "context is null");
     EXPECT(varikernel_memory_held(context, NULL), VARIKERNEL_STATUS_INVALID_ARGUMENT, "bytes is null");

@@ -2,7 +2,7 @@
 
 use glam::UVec2;
 use varikernel::image::Difference;
-use varikernel::settings::{Edges, Method, Order, Search, Settings, Split, Storage};
+use varikernel::settings::{Edges, Laboratory, Method, Order, Search, Settings, Split, Storage};
 use varikernel::{Image, reference};
 
 use crate::support::{assert_same, each, egl, on_gpu, random_map, search, sparse_map};
@@ -88,7 +88,13 @@ fn exact_is_below_twice_naive(density: &Image<u32>, naive: &reference::Radii, se
 }
 
 fn averaged(search: Search, split: Split) -> Settings {
-    Settings { search, split, method: Method::AveragedMipmap, limited_mask: true, ..Settings::default() }
+    Settings {
+        search,
+        method: Method::AveragedMipmap,
+        limited_mask: true,
+        laboratory: Laboratory { split, ..Laboratory::default() },
+        ..Settings::default()
+    }
 }
 
 #[test]

@@ -6,7 +6,7 @@ use glam::UVec2;
 use glow::HasContext as _;
 use varikernel::image::Difference;
 use varikernel::settings::{
-    Edges, Exactness, Faults, Method, Order, SatBuild, Search, Settings, Storage, Variation,
+    Edges, Exactness, Faults, Laboratory, Method, Order, SatBuild, Search, Settings, Storage, Variation,
 };
 use varikernel::{
     Certificate, CountBounds, DensityMap, Error, Gl, Image, RadiusMap, RadiusPipeline, reference,
@@ -131,7 +131,7 @@ fn variations_and_totals_past_32_bits_are_certified() {
     let usual = Settings {
         search: search(900_000_000, 5, Edges::Scale),
         limited_mask: true,
-        sat_build: SatBuild::Doubling,
+        laboratory: Laboratory { sat_build: SatBuild::Doubling, ..Laboratory::default() },
         ..Settings::default()
     };
     let in_16_bits = Settings { search: search(100, 5, Edges::Scale), storage: Storage::U16, ..usual };
@@ -141,11 +141,20 @@ fn variations_and_totals_past_32_bits_are_certified() {
     for settings in [
         usual,
         Settings { search: bracketed, ..usual },
-        Settings { sat_build: SatBuild::Scan, ..usual },
-        Settings { variation: Some(Variation::UnconditionalFetches), ..usual },
-        Settings { variation: Some(Variation::UnfinishedTexels), ..usual },
+        Settings { laboratory: Laboratory { sat_build: SatBuild::Scan, ..usual.laboratory }, ..usual },
+        Settings {
+            laboratory: Laboratory { variation: Some(Variation::UnconditionalFetches), ..usual.laboratory },
+            ..usual
+        },
+        Settings {
+            laboratory: Laboratory { variation: Some(Variation::UnfinishedTexels), ..usual.laboratory },
+            ..usual
+        },
         in_16_bits,
-        Settings { sat_build: SatBuild::Scan, ..in_16_bits },
+        Settings {
+            laboratory: Laboratory { sat_build: SatBuild::Scan, ..in_16_bits.laboratory },
+            ..in_16_bits
+        },
     ] {
         assert_eq!(Searched::new(&gl, &heavy, settings).certify(), PROVED, "{settings:?}");
     }
@@ -267,8 +276,8 @@ fn a_count_that_changed_after_the_build_is_counted() {
         let map = DensityMap::borrow(&gl, name, CountBounds::total_at_most(4 * 37 * 20)).unwrap();
         let settings = Settings {
             search: search(25, 16, Edges::Scale),
-            sat_build: build,
             storage,
+            laboratory: Laboratory { sat_build: build, ..Laboratory::default() },
             ..Settings::default()
         };
         let mut pipeline = RadiusPipeline::new(&gl, map.size(), map.format(), settings).unwrap();
@@ -348,7 +357,11 @@ fn the_printed_faults_get_no_certificate() {
         (Faults { sample_stride: true, ..none }, true),
         (Faults::AS_PRINTED, true),
     ] {
-        let settings = Settings { search, faults, sat_build: SatBuild::Doubling, ..Settings::default() };
+        let settings = Settings {
+            search,
+            laboratory: Laboratory { faults, sat_build: SatBuild::Doubling, ..Laboratory::default() },
+            ..Settings::default()
+        };
         let mut searched = Searched::new(&gl, &density, settings);
         let found = searched.certify();
         assert!(!found.is_proved(), "{settings:?}");
@@ -381,8 +394,11 @@ fn what_cannot_be_certified_is_refused() {
     }
     let waived = Settings {
         storage: Storage::F32,
-        sat_build: SatBuild::Doubling,
-        exactness: Exactness::Waived,
+        laboratory: Laboratory {
+            sat_build: SatBuild::Doubling,
+            exactness: Exactness::Waived,
+            ..usual.laboratory
+        },
         ..usual
     };
     assert!(matches!(pipeline(waived).certify(&map), Err(Error::Inexact { .. })));

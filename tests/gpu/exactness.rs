@@ -3,7 +3,7 @@
 use glam::UVec2;
 use varikernel::image::Difference;
 use varikernel::settings::{
-    Edges, Exactness, Faults, Method, Order, SatBuild, SatSamples, Search, Settings, Storage,
+    Edges, Exactness, Faults, Laboratory, Method, Order, SatBuild, SatSamples, Search, Settings, Storage,
 };
 use varikernel::{Changed, CountBounds, DensityMap, Error, Frame, Gl, Image, RadiusPipeline, reference};
 
@@ -96,13 +96,17 @@ fn f32_is_refused_past_2_to_24_and_rightly_so() {
     let settings = Settings {
         search: search(49_000, 16, Edges::Zero),
         storage: Storage::F32,
-        sat_build: SatBuild::Doubling,
+        laboratory: Laboratory { sat_build: SatBuild::Doubling, ..Laboratory::default() },
         ..Settings::default()
     };
     assert!(refused(&gl, &density, settings));
     assert!(!refused(&gl, &density, Settings { method: Method::Pyramid, ..settings }), "its boxes are small");
 
-    let waived = Settings { exactness: Exactness::Waived, limited_mask: true, ..settings };
+    let waived = Settings {
+        limited_mask: true,
+        laboratory: Laboratory { exactness: Exactness::Waived, ..settings.laboratory },
+        ..settings
+    };
     let expected = reference::radius_by_table(&density, settings.search);
     let found = on_gpu(&gl, &density, waived);
     let difference = Difference::between(&found.radius, &expected.radius).unwrap();
@@ -153,7 +157,10 @@ fn u16_is_refused_past_2_to_16_and_rightly_so() {
     assert!(refused(&gl, &map(65_535), settings));
     assert!(!refused(&gl, &map(65_535), Settings { storage: Storage::U32, ..settings }));
 
-    let waived = Settings { exactness: Exactness::Waived, ..settings };
+    let waived = Settings {
+        laboratory: Laboratory { exactness: Exactness::Waived, ..settings.laboratory },
+        ..settings
+    };
     for (density, is_wrong) in [(map(65_534), false), (map(65_535), true)] {
         let expected = reference::radius(&density, settings.search);
         let found = on_gpu(&gl, &density, waived);
@@ -163,7 +170,13 @@ fn u16_is_refused_past_2_to_16_and_rightly_so() {
     for settings in [
         Settings { method: Method::BruteForce, ..settings },
         Settings { method: Method::Pyramid, ..settings },
-        Settings { faults: Faults { border_test: true, ..Faults::NONE }, ..settings },
+        Settings {
+            laboratory: Laboratory {
+                faults: Faults { border_test: true, ..Faults::NONE },
+                ..settings.laboratory
+            },
+            ..settings
+        },
     ] {
         assert!(matches!(settings.validate(), Err(Error::Setting { name: "storage", .. })), "{settings:?}");
     }
@@ -211,7 +224,11 @@ fn without_bounds_only_n_and_the_radius_can_prove_exactness() {
     let large = Settings { search: search(1 << 30, 32, Edges::Scale), ..usual };
     assert!(matches!(render(large), Err(Error::Inexact { .. })));
     assert!(matches!(
-        render(Settings { storage: Storage::F32, sat_build: SatBuild::Doubling, ..usual }),
+        render(Settings {
+            storage: Storage::F32,
+            laboratory: Laboratory { sat_build: SatBuild::Doubling, ..usual.laboratory },
+            ..usual
+        }),
         Err(Error::Inexact { .. })
     ));
 }
@@ -248,7 +265,11 @@ fn f16_is_exact_up_to_2_to_11_and_refused_past_it() {
     for edges in [Edges::Zero, Edges::Scale] {
         for sat_samples in SatSamples::ALL {
             let search = search(20, 6, edges);
-            let settings = Settings { search, sat_samples, ..table(Storage::F16) };
+            let settings = Settings {
+                search,
+                laboratory: Laboratory { sat_samples, ..table(Storage::F16).laboratory },
+                ..table(Storage::F16)
+            };
             let map = random_map(37, 29, 3);
             let total: u32 = map.values().iter().sum();
             assert!(total > 900 && total < 1 << 11, "{total}");
@@ -256,7 +277,10 @@ fn f16_is_exact_up_to_2_to_11_and_refused_past_it() {
             assert_same(&on_gpu(&gl, &map, settings), &expected, &format!("{settings:?}"));
             let dense = random_map(37, 29, 9);
             assert!(refused(&gl, &dense, settings));
-            let waived = Settings { exactness: Exactness::Waived, ..settings };
+            let waived = Settings {
+                laboratory: Laboratory { exactness: Exactness::Waived, ..settings.laboratory },
+                ..settings
+            };
             let expected = reference::radius(&dense, search);
             let found = on_gpu(&gl, &dense, waived);
             let difference = Difference::between(&found.radius, &expected.radius).unwrap();
@@ -274,7 +298,10 @@ fn sums_without_the_mean_are_never_taken_for_exact_though_small_ones_are() {
             let settings = Settings { search, ..table(storage) };
             let (map, more) = (random_map(37, 29, 9), random_map(37, 29, 4));
             assert!(refused(&gl, &map, settings));
-            let waived = Settings { exactness: Exactness::Waived, ..settings };
+            let waived = Settings {
+                laboratory: Laboratory { exactness: Exactness::Waived, ..settings.laboratory },
+                ..settings
+            };
             let expected = reference::radius(&map, search);
             assert_same(&on_gpu(&gl, &map, waived), &expected, &format!("{waived:?}"));
             let bracketed = Settings { search: Search { order: Order::Bracketed, ..search }, ..waived };
@@ -292,7 +319,10 @@ fn sums_without_the_mean_are_never_taken_for_exact_though_small_ones_are() {
         }
         for settings in [
             Settings { method: Method::Pyramid, ..table(storage) },
-            Settings { sat_build: SatBuild::Scan, ..table(storage) },
+            Settings {
+                laboratory: Laboratory { sat_build: SatBuild::Scan, ..table(storage).laboratory },
+                ..table(storage)
+            },
         ] {
             assert!(matches!(settings.validate(), Err(Error::Setting { .. })), "{settings:?}");
         }
@@ -305,8 +335,8 @@ fn table(storage: Storage) -> Settings {
     Settings {
         search: order,
         storage,
-        sat_build: SatBuild::Doubling,
         limited_mask: true,
+        laboratory: Laboratory { sat_build: SatBuild::Doubling, ..Laboratory::default() },
         ..Settings::default()
     }
 }

@@ -1,7 +1,9 @@
 //! The listings as printed: each fault on the GPU is the fault that the reference predicts.
 
 use varikernel::image::Difference;
-use varikernel::settings::{Edges, Faults, Method, Order, SatBuild, SatSamples, Search, Settings, Split};
+use varikernel::settings::{
+    Edges, Faults, Laboratory, Method, Order, SatBuild, SatSamples, Search, Settings, Split,
+};
 use varikernel::{Image, reference};
 
 use crate::support::{assert_same, egl, on_gpu, random_map, search, sparse_map};
@@ -43,10 +45,13 @@ fn every_fault_of_the_table_listings_is_the_predicted_one() {
                 let search = Search { order, ..search(25, 16, edges) };
                 let settings = Settings {
                     search,
-                    sat_build: SatBuild::Doubling,
-                    sat_samples,
-                    faults,
                     limited_mask: true,
+                    laboratory: Laboratory {
+                        sat_build: SatBuild::Doubling,
+                        sat_samples,
+                        faults,
+                        ..Laboratory::default()
+                    },
                     ..Settings::default()
                 };
                 let expected = reference::as_printed::radius(&density, search, sat_samples, faults);
@@ -64,10 +69,9 @@ fn the_forgotten_strip_of_the_pyramid_is_the_predicted_one() {
         let search = Search { order: Order::Forward, ..search(25, 16, Edges::Scale) };
         let settings = Settings {
             search,
-            faults,
             method: Method::Pyramid,
-            split: Split::Odd,
             limited_mask: true,
+            laboratory: Laboratory { faults, split: Split::Odd, ..Laboratory::default() },
             ..Settings::default()
         };
         let expected = reference::pyramid::radius(&density, search, Split::Odd, faults);

@@ -17,12 +17,12 @@ use glow::HasContext as _;
 use varikernel::gl::TextureFormat;
 use varikernel::settings::{Edges, IrradianceSettings, Method, Order, RadiusChoice, Search, Settings};
 use varikernel::{
-    AdaptivePipeline, Changed, CountBounds, DensityMap, Frame, Gl, Image, IrradiancePipeline, Mask,
-    PhotonPoints, RadiusPipeline, StatePolicy, reference,
+    Changed, CountBounds, DensityMap, Frame, Gl, Image, IrradiancePipeline, Mask, PhotonPoints,
+    RadiusPipeline, StatePolicy, reference,
 };
 
 use crate::host_picture::HostPicture;
-use crate::support::{random_map, search, working_candidates};
+use crate::support::{planned, random_map, search, working_candidates};
 
 /// A command that was called, its arguments, and what it answered.
 #[derive(Debug)]
@@ -265,13 +265,13 @@ fn radius_pipelines(gl: &Gl) {
 
 fn adaptive_pipeline(gl: &Gl) {
     let map = upload(gl);
-    let mut pipeline = AdaptivePipeline::new(gl, SIZE, TextureFormat::R32Uint, bracketed()).unwrap();
+    let mut pipeline = RadiusPipeline::new(gl, SIZE, TextureFormat::R32Uint, planned(bracketed())).unwrap();
     let mut fetched = 0;
     for frame in 0..8 {
-        let order = pipeline.choice().settings.search.order;
+        let order = pipeline.decision().unwrap().settings.search.order;
         let log = log_of(|| pipeline.update(&Frame::new(&map)).unwrap().texture());
         // The first frames may compile what the census calls for.
-        if order == pipeline.choice().settings.search.order {
+        if order == pipeline.decision().unwrap().settings.search.order {
             check(gl, &format!("adaptive frame {frame}"), &log);
             fetched += log.iter().filter(|call| call.name == "glGetBufferSubData").count();
         }

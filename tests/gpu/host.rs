@@ -8,7 +8,7 @@ use std::sync::Arc;
 use glam::UVec2;
 use glow::HasContext as _;
 use varikernel::gl::TextureFormat;
-use varikernel::settings::{Edges, Method, SatBuild, Settings, Storage};
+use varikernel::settings::{Edges, Laboratory, Method, SatBuild, Settings, Storage};
 use varikernel::{CountBounds, DensityMap, Error, Gl, Image, RadiusPipeline, context, reference};
 
 use crate::support::{each, egl, random_map, search, working_candidates};
@@ -81,7 +81,13 @@ fn textures_of_the_host_are_read_in_each_format() {
                 for storage in [Storage::U32, Storage::F32] {
                     let search = search(25, 16, Edges::Scale);
                     let sat_build = SatBuild::Doubling;
-                    let settings = Settings { search, method, storage, sat_build, ..Settings::default() };
+                    let settings = Settings {
+                        search,
+                        method,
+                        storage,
+                        laboratory: Laboratory { sat_build, ..Laboratory::default() },
+                        ..Settings::default()
+                    };
                     let mut pipeline = RadiusPipeline::new(&gl, map.size(), map.format(), settings).unwrap();
                     let found = pipeline.render(&map).unwrap().read().unwrap();
                     assert_eq!(found, expected, "{format:?}, {method:?}, {storage:?}");

@@ -10,13 +10,12 @@ use glam::UVec2;
 use glow::HasContext as _;
 use varikernel::gl::Timer;
 use varikernel::measure::{Unit, UnitPass};
-use varikernel::settings::{Edges, Method, Order, SatBuild, Search, Settings};
+use varikernel::settings::{Edges, Laboratory, Method, Order, SatBuild, Search, Settings};
 use varikernel::{
-    AdaptivePipeline, Changed, CountBounds, DensityMap, Frame, Gl, Image, Mask, MaskMaker, RadiusMap,
-    RadiusPipeline, reference,
+    Changed, CountBounds, DensityMap, Frame, Gl, Image, Mask, MaskMaker, RadiusMap, RadiusPipeline, reference,
 };
 
-use crate::support::{random_map, search, working_candidates};
+use crate::support::{planned, random_map, search, working_candidates};
 
 const SIZE: UVec2 = UVec2::new(37, 20);
 
@@ -115,7 +114,10 @@ fn every_object_of_the_library_has_a_name() {
         .flat_map(|method| {
             let search = search(25, 16, Edges::Scale);
             let settings = Settings { search, limited_mask: true, ..Settings::of(method) };
-            [SatBuild::Scan, SatBuild::Doubling].map(|sat_build| Settings { sat_build, ..settings })
+            [SatBuild::Scan, SatBuild::Doubling].map(|sat_build| Settings {
+                laboratory: Laboratory { sat_build, ..settings.laboratory },
+                ..settings
+            })
         })
         .map(|settings| RadiusPipeline::new(gl, SIZE, map.format(), settings).unwrap())
         .collect();
@@ -130,7 +132,8 @@ fn every_object_of_the_library_has_a_name() {
     }
     masked.set_order(Order::Forward).unwrap();
     let adaptive =
-        AdaptivePipeline::new(gl, SIZE, map.format(), Settings { masked: false, ..settings() }).unwrap();
+        RadiusPipeline::new(gl, SIZE, map.format(), planned(Settings { masked: false, ..settings() }))
+            .unwrap();
     let radii = pipelines[0].radii();
     let borrowed = RadiusMap::borrow(gl, radii.texture(), radii.limited_texture()).unwrap();
     assert_eq!(debugger.label(radii.texture()), "varikernel: radius map");
@@ -161,7 +164,7 @@ fn every_object_of_the_library_has_a_name() {
         assert!(labels.iter().any(|(found, _, name)| (*found, name) == (kind, &label)), "{kind} {label}");
     }
     // One without a name is seen; one of the host stays nameless when it is borrowed.
-    let host = crate::frames::depth_and_stencil(gl, SIZE);
+    let host = crate::masks::depth_and_stencil(gl, SIZE);
     assert_eq!(debugger.unlabelled(), [("texture", host.0.get(), String::new())]);
     // SAFETY: the context is current, and the name is the host's.
     unsafe { gl.glow().delete_texture(host) };
@@ -234,16 +237,16 @@ fn each_pass_is_a_group_that_is_closed_also_after_an_error() {
     let density = random_map(SIZE.x, SIZE.y, 4);
     let map = DensityMap::upload(gl, &density, CountBounds::of(&density, settings().search)).unwrap();
     let settings = Settings { masked: false, ..settings() };
-    let mut adaptive = AdaptivePipeline::new(gl, SIZE, map.format(), settings).unwrap();
+    let mut adaptive = RadiusPipeline::new(gl, SIZE, map.format(), planned(settings)).unwrap();
     let mut other = RadiusPipeline::new(gl, UVec2::ONE, map.format(), settings).unwrap();
     GROUPS.take();
     adaptive.update(&Frame::new(&map)).unwrap();
     let labels = closed_groups().expect("groups are closed");
-    let known: Vec<_> = varikernel::radius::shader_sources(map.format(), &adaptive.choice().settings)
-        .iter()
-        .map(|source| source.label().to_owned())
-        .chain(["census".to_owned()])
-        .collect();
+    let known: Vec<_> =
+        varikernel::radius::shader_sources(map.format(), &adaptive.decision().unwrap().settings)
+            .iter()
+            .map(|source| source.label().to_owned())
+            .collect();
     assert!(labels.len() >= 8 && labels.iter().all(|label| known.contains(label)), "{labels:?}, {known:?}");
     assert_eq!(labels.last().unwrap(), "census");
     other.render(&map).unwrap_err();
@@ -272,7 +275,7 @@ fn a_context_without_names_will_do() {
         }
         .unwrap();
         let map = DensityMap::upload(&gl, &density, CountBounds::of(&density, settings.search)).unwrap();
-        let mut adaptive = AdaptivePipeline::new(&gl, SIZE, map.format(), settings).unwrap();
+        let mut adaptive = RadiusPipeline::new(&gl, SIZE, map.format(), planned(settings)).unwrap();
         let radii = adaptive.update(&Frame::new(&map)).unwrap().read().unwrap();
         assert_eq!(radii, reference::radius(&density, settings.search).radius);
     }

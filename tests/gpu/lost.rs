@@ -10,15 +10,15 @@ use glam::UVec2;
 use varikernel::gl::{StageTimes, Timer};
 use varikernel::settings::{Estimate, IrradianceSettings, Method, Order, RadiusChoice, Settings};
 use varikernel::{
-    AdaptivePipeline, ChosenRadius, CountBounds, DensityMap, DensityStage, Error, Frame, GatherStage, Gl,
-    HostDepth, HostSurfaces, Image, IrradiancePipeline, Mask, MaskMaker, PositionMaker, RadiusMap,
-    RadiusPipeline, SplatStage, SurfaceMaps,
+    ChosenRadius, CountBounds, DensityMap, DensityStage, Error, Frame, GatherStage, Gl, HostDepth,
+    HostSurfaces, Image, IrradiancePipeline, Mask, MaskMaker, PositionMaker, RadiusMap, RadiusPipeline,
+    SplatStage, SurfaceMaps,
 };
 
 use crate::calls::{Calls, counted};
 use crate::driver::{self, LATER_ERROR, PENDING_ERROR, live};
 use crate::host_picture::HostPicture;
-use crate::support::{egl, random_map};
+use crate::support::{egl, planned, random_map};
 
 /// What a host may hold.
 struct Objects {
@@ -27,7 +27,7 @@ struct Objects {
     mask: Mask,
     maker: MaskMaker,
     pipeline: RadiusPipeline,
-    adaptive: AdaptivePipeline,
+    adaptive: RadiusPipeline,
     borrowed: RadiusMap,
     timer: Timer,
     times: StageTimes,
@@ -111,7 +111,7 @@ impl Objects {
         let mut pipeline = RadiusPipeline::new(gl, size, map.format(), settings).unwrap();
         let radii = pipeline.render(&map).unwrap().texture();
         pipeline.certify(&map).unwrap();
-        let mut adaptive = AdaptivePipeline::new(gl, size, map.format(), settings).unwrap();
+        let mut adaptive = RadiusPipeline::new(gl, size, map.format(), planned(settings)).unwrap();
         adaptive.update(&Frame::new(&map)).unwrap();
         let mut times = StageTimes::new(gl).unwrap();
         times.begin_frame();
@@ -159,9 +159,12 @@ impl Objects {
                 "RadiusPipeline::new, nothing to build",
                 failure(RadiusPipeline::new(gl, size, format, Settings::of(Method::BruteForce))),
             ),
-            ("AdaptivePipeline::update", failure(adaptive.update(&frame))),
-            ("AdaptivePipeline::resize", failure(adaptive.resize(2 * size))),
-            ("AdaptivePipeline::new", failure(AdaptivePipeline::new(gl, size, format, Settings::default()))),
+            ("RadiusPipeline::update, planned", failure(adaptive.update(&frame))),
+            ("RadiusPipeline::resize, planned", failure(adaptive.resize(2 * size))),
+            (
+                "RadiusPipeline::new, planned",
+                failure(RadiusPipeline::new(gl, size, format, planned(Settings::default()))),
+            ),
             ("DensityMap::upload", failure(DensityMap::upload(gl, counts, CountBounds::UNKNOWN))),
             ("DensityMap::borrow", failure(DensityMap::borrow(gl, name, CountBounds::UNKNOWN))),
             ("RadiusMap::read", failure(pipeline.radii().read())),

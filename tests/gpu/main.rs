@@ -22,6 +22,7 @@ mod labels;
 mod leaks;
 mod live;
 mod lost;
+mod masks;
 mod memory;
 mod objects;
 #[path = "../common/osmesa.rs"]

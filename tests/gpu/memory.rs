@@ -5,17 +5,17 @@
 use glam::UVec2;
 use varikernel::gl::DeviceInfo;
 use varikernel::settings::{
-    Edges, IrradianceSettings, Method, Order, RadiusChoice, SatBuild, Search, Settings,
+    Edges, IrradianceSettings, Laboratory, Method, Order, Planning, RadiusChoice, SatBuild, Search, Settings,
 };
 use varikernel::{
-    AdaptivePipeline, Changed, CountBounds, DensityMap, Error, Frame, Gl, Image, IrradiancePipeline, Mask,
-    RadiusPipeline, reference,
+    Changed, CountBounds, DensityMap, Error, Frame, Gl, Image, IrradiancePipeline, Mask, RadiusPipeline,
+    reference,
 };
 
 use crate::calls::{Calls, counted};
 use crate::driver;
 use crate::host_picture::HostPicture;
-use crate::support::{egl, exact_variants, random_map, search, sparse_map};
+use crate::support::{egl, exact_variants, planned, random_map, search, sparse_map};
 
 const SIZES: [UVec2; 5] =
     [UVec2::ONE, UVec2::new(1, 6), UVec2::new(12, 19), UVec2::new(49, 2), UVec2::new(130, 65)];
@@ -42,9 +42,9 @@ fn memory_by_hand() {
     let search = Search { order: Order::Binary, ..Settings::default().search };
     let doubling = Settings {
         method: Method::SummedAreaTable,
-        sat_build: SatBuild::Doubling,
         limited_mask: false,
         search,
+        laboratory: Laboratory { sat_build: SatBuild::Doubling, ..Laboratory::default() },
         ..Settings::default()
     };
     let required = of(doubling);
@@ -117,7 +117,11 @@ fn what_is_allocated_on_demand_is_known_as_well() {
     let counts = random_map(70, 33, 3);
     let map = DensityMap::upload(&gl, &counts, CountBounds::total_at_most(10_000)).unwrap();
     for sat_build in [SatBuild::Scan, SatBuild::Doubling] {
-        let settings = Settings { sat_build, limited_mask: true, ..Settings::default() };
+        let settings = Settings {
+            limited_mask: true,
+            laboratory: Laboratory { sat_build, ..Laboratory::default() },
+            ..Settings::default()
+        };
         let required = RadiusPipeline::memory_required_on(gl.info(), map.size(), &settings).unwrap();
         let before = held(&gl);
         let mut pipeline = RadiusPipeline::new(&gl, map.size(), map.format(), settings).unwrap();
@@ -145,7 +149,7 @@ fn what_is_allocated_on_demand_is_known_as_well() {
 }
 
 #[test]
-fn an_adaptive_pipeline_takes_what_it_says() {
+fn a_pipeline_that_plans_each_frame_takes_what_it_says() {
     let gl = egl();
     // Dense, then thin: a map of this size is searched forward, and then by halving.
     let (dense, thin) = (Image::filled(UVec2::splat(65), 10), sparse_map(65, 65));
@@ -154,27 +158,30 @@ fn an_adaptive_pipeline_takes_what_it_says() {
     };
     let (dense, thin) = (map(&dense).unwrap(), map(&thin).unwrap());
     let settings = Settings::default();
-    let required = AdaptivePipeline::memory_required(dense.size(), &settings).unwrap();
-    assert_eq!(AdaptivePipeline::memory_required_on(gl.info(), dense.size(), &settings).unwrap(), required);
+    let required = RadiusPipeline::memory_required(dense.size(), &planned(settings)).unwrap();
+    assert_eq!(
+        RadiusPipeline::memory_required_on(gl.info(), dense.size(), &planned(settings)).unwrap(),
+        required
+    );
     let before = held(&gl);
-    let mut pipeline = AdaptivePipeline::new(&gl, dense.size(), dense.format(), settings).unwrap();
+    let mut pipeline = RadiusPipeline::new(&gl, dense.size(), dense.format(), planned(settings)).unwrap();
     assert_eq!(held(&gl) - before, required.at_creation);
     // 2 x 2 tiles of 64 are counted, and their counts fetched.
-    let plain = pipeline.choice().settings;
+    let plain = Settings { planning: Planning::AsAsked, ..pipeline.decision().unwrap().settings };
     let plain = RadiusPipeline::memory_required(dense.size(), &plain).unwrap();
     assert_eq!(required.at_creation, plain.at_creation + 2 * 16);
     let mut orders = std::collections::BTreeSet::new();
     for map in [&dense, &thin] {
         for _ in 0..4 {
             pipeline.update(&Frame::new(map)).unwrap();
-            orders.insert(format!("{:?}", pipeline.choice().settings.search.order));
+            orders.insert(format!("{:?}", pipeline.decision().unwrap().settings.search.order));
             // SAFETY: the context is current.
             unsafe { glow::HasContext::finish(gl.glow()) };
         }
     }
     assert_eq!(orders.len(), 3, "{orders:?}");
     assert_eq!(held(&gl) - before, required.at_creation + required.other_orders);
-    assert_eq!(required.certificate, 0);
+    assert_eq!((required.additions, required.certificate), (plain.additions, plain.certificate));
 }
 
 /// The radii of a resized pipeline are the definition's, and nothing is compiled for them.
@@ -241,7 +248,7 @@ fn resizing_compiles_nothing_and_believes_nothing() {
 }
 
 #[test]
-fn an_adaptive_pipeline_is_resized_while_a_census_is_on_its_way() {
+fn a_pipeline_that_plans_is_resized_while_a_census_is_on_its_way() {
     let mut calls = Calls::new();
     // SAFETY: a trampoline calls the command that it stands for.
     let gl = unsafe { driver::open_through(counted) };
@@ -251,12 +258,13 @@ fn an_adaptive_pipeline_is_resized_while_a_census_is_on_its_way() {
     let (small, large) = (random_map(30, 20, 4), random_map(140, 150, 4));
     let (small_map, large_map) = (upload(&small), upload(&large));
     let mut pipeline =
-        AdaptivePipeline::new(&gl, small.size(), small_map.format(), Settings::default()).unwrap();
+        RadiusPipeline::new(&gl, small.size(), small_map.format(), planned(Settings::default())).unwrap();
     pipeline.update(&Frame::new(&small_map)).unwrap();
     calls.restart();
     pipeline.resize(large.size()).unwrap();
     assert_eq!(calls.of("glCompileShader"), 0);
-    let expected = AdaptivePipeline::memory_required(large.size(), &Settings::default()).unwrap().at_creation;
+    let expected =
+        RadiusPipeline::memory_required(large.size(), &planned(Settings::default())).unwrap().at_creation;
     assert_eq!(held(&gl), expected + 4 * (600 + 140 * 150));
     for _ in 0..3 {
         let radii = pipeline.update(&Frame::new(&large_map)).unwrap().read().unwrap();

@@ -6,12 +6,11 @@ use glam::UVec2;
 use glow::HasContext as _;
 use varikernel::settings::{Method, Order, Settings};
 use varikernel::{
-    AdaptivePipeline, CountBounds, DensityMap, Error, Frame, Image, Mask, MaskMaker, RadiusMap,
-    RadiusPipeline, gl,
+    CountBounds, DensityMap, Error, Frame, Image, Mask, MaskMaker, RadiusMap, RadiusPipeline, gl,
 };
 
 use crate::driver::{self, FAIL_AT, live};
-use crate::support::random_map;
+use crate::support::{planned, random_map};
 
 #[test]
 fn every_object_is_freed_and_the_state_put_back_also_after_an_error() {
@@ -131,7 +130,8 @@ fn objects_may_be_dropped_in_any_order() {
         let radii = certified.render(&map).unwrap().texture();
         certified.certify(&map).unwrap();
         certified.set_order(Order::Forward).unwrap();
-        let mut adaptive = AdaptivePipeline::new(&gl, size, map.format(), Settings::default()).unwrap();
+        let mut adaptive =
+            RadiusPipeline::new(&gl, size, map.format(), planned(Settings::default())).unwrap();
         adaptive.update(&Frame::new(&map)).unwrap();
         let mut times = gl::StageTimes::new(&gl).unwrap();
         times.begin_frame();

@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 use varikernel::gl::TextureFormat;
 use varikernel::maps::exactness::plan;
-use varikernel::settings::{Edges, Matching, Method, Order, Search, Settings, Split, Storage};
+use varikernel::settings::{Edges, Laboratory, Matching, Method, Order, Search, Settings, Split, Storage};
 use varikernel::{CountBounds, DensityMap, Error, Gl, Image, RadiusPipeline, reference};
 
 use crate::support::{
@@ -125,8 +125,9 @@ pub(crate) fn longest_search(gl: &Gl, settings: Settings, radius: u32) {
 fn searches_longer_than_llvmpipe_allows_in_a_pass_are_exact() {
     let gl = egl();
     let pyramid = Settings { method: Method::Pyramid, ..brute_force_forward(60) };
-    let odd = Settings { split: Split::Odd, ..pyramid };
-    let modulo = Settings { matching: Matching::Modulo, ..pyramid };
+    let odd = Settings { laboratory: Laboratory { split: Split::Odd, ..pyramid.laboratory }, ..pyramid };
+    let modulo =
+        Settings { laboratory: Laboratory { matching: Matching::Modulo, ..pyramid.laboratory }, ..pyramid };
     let modulo = Settings { search: Search { max_radius: 30, ..modulo.search }, ..modulo };
     let binary = Search { order: Order::Binary, max_radius: 32, ..pyramid.search };
     // The end of the first of several passes, one before and one after it, and the end.

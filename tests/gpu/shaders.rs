@@ -11,15 +11,12 @@ use varikernel::gl::{ShaderSource, ShaderStage, TextureFormat};
 use varikernel::measure::Unit;
 use varikernel::radius::shader_sources;
 use varikernel::settings::{
-    Edges, Exactness, Faults, Matching, Method, Order, SatBuild, SatSamples, Search, Settings, Split,
-    Storage, Variation,
+    Edges, Exactness, Faults, Laboratory, Matching, Method, Order, SatBuild, SatSamples, Search, Settings,
+    Split, Storage, Variation,
 };
-use varikernel::{
-    AdaptivePipeline, CountBounds, DensityMap, Gl, MaskMaker, PositionMaker, RadiusPipeline, context,
-    reference,
-};
+use varikernel::{CountBounds, DensityMap, Gl, MaskMaker, PositionMaker, RadiusPipeline, context, reference};
 
-use crate::support::{random_map, search, working_candidates};
+use crate::support::{planned, random_map, search, working_candidates};
 
 const CORE_COMMANDS: &str = include_str!("../gl33-core-commands.txt");
 
@@ -53,18 +50,48 @@ pub(crate) fn all_settings() -> Vec<Settings> {
                             method,
                             storage,
                             limited_mask,
-                            sat_build,
+                            laboratory: Laboratory { sat_build, ..Laboratory::default() },
                             ..Settings::default()
                         };
                         all.push(base);
                         all.push(Settings { masked: true, ..base });
-                        all.push(Settings { sat_build: SatBuild::Scan, ..base });
-                        all.push(Settings { split: Split::Odd, matching: Matching::Modulo, ..base });
-                        all.push(Settings { split: Split::Odd, faults: Faults::AS_PRINTED, ..base });
-                        all.push(Settings { sat_samples: SatSamples::Sixteen, ..base });
+                        all.push(Settings {
+                            laboratory: Laboratory { sat_build: SatBuild::Scan, ..base.laboratory },
+                            ..base
+                        });
+                        all.push(Settings {
+                            laboratory: Laboratory {
+                                split: Split::Odd,
+                                matching: Matching::Modulo,
+                                ..base.laboratory
+                            },
+                            ..base
+                        });
+                        all.push(Settings {
+                            laboratory: Laboratory {
+                                split: Split::Odd,
+                                faults: Faults::AS_PRINTED,
+                                ..base.laboratory
+                            },
+                            ..base
+                        });
+                        all.push(Settings {
+                            laboratory: Laboratory { sat_samples: SatSamples::Sixteen, ..base.laboratory },
+                            ..base
+                        });
                         for variation in Variation::ALL {
-                            let varied = Settings { variation: Some(variation), ..base };
-                            let modulo = Settings { split: Split::Odd, matching: Matching::Modulo, ..varied };
+                            let varied = Settings {
+                                laboratory: Laboratory { variation: Some(variation), ..base.laboratory },
+                                ..base
+                            };
+                            let modulo = Settings {
+                                laboratory: Laboratory {
+                                    split: Split::Odd,
+                                    matching: Matching::Modulo,
+                                    ..varied.laboratory
+                                },
+                                ..varied
+                            };
                             all.extend([varied, modulo]);
                         }
                     }
@@ -84,10 +111,14 @@ pub(crate) fn all_sources() -> Vec<ShaderSource> {
     }
     for settings in all_settings() {
         for format in [TextureFormat::R32Uint, TextureFormat::R32Float] {
-            let census = AdaptivePipeline::shader_source(format, &Settings::default());
-            for source in shader_sources(format, &settings).into_iter().chain([census]) {
+            for source in shader_sources(format, &settings) {
                 sources.insert(source.fragment(), source);
             }
+        }
+    }
+    for format in [TextureFormat::R32Uint, TextureFormat::R32Float] {
+        for source in shader_sources(format, &planned(Settings::default())) {
+            sources.insert(source.fragment(), source);
         }
     }
     for source in varikernel::measure::approximation_sources(&Settings::default()) {
@@ -160,11 +191,12 @@ fn every_method_runs_on_the_commands_of_3_3_core_alone() {
             .unwrap();
         for settings in all_settings() {
             let is_usual = settings.search.min_photons == 25 && settings.limited_mask;
-            if is_usual && settings.faults == Faults::NONE && !settings.masked {
+            if is_usual && settings.laboratory.faults == Faults::NONE && !settings.masked {
                 // Right on a map as small as this one, though not proved.
                 let is_provable = settings.storage != Storage::F32MinusMean;
-                let exactness = if is_provable { settings.exactness } else { Exactness::Waived };
-                let settings = Settings { exactness, ..settings };
+                let exactness = if is_provable { settings.laboratory.exactness } else { Exactness::Waived };
+                let settings =
+                    Settings { laboratory: Laboratory { exactness, ..settings.laboratory }, ..settings };
                 let mut pipeline = RadiusPipeline::new(&gl, map.size(), map.format(), settings).unwrap();
                 let radii = pipeline.render(&map).unwrap().read().unwrap();
                 if settings.method == Method::SummedAreaTable && is_provable {

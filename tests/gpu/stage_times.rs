@@ -7,7 +7,7 @@ use std::time::Duration;
 use glam::UVec2;
 use glow::HasContext as _;
 use varikernel::gl::StageTimes;
-use varikernel::settings::{Edges, Method, Order, SatBuild, Search, Settings};
+use varikernel::settings::{Edges, Laboratory, Method, Order, SatBuild, Search, Settings};
 use varikernel::{CountBounds, DensityMap, Gl, RadiusPipeline};
 
 use crate::calls::{Calls, counted};
@@ -19,7 +19,7 @@ fn settings() -> Settings {
     Settings {
         search: search(9, 8, Edges::Scale),
         method: Method::SummedAreaTable,
-        sat_build: SatBuild::Doubling,
+        laboratory: Laboratory { sat_build: SatBuild::Doubling, ..Laboratory::default() },
         ..Settings::default()
     }
 }
@@ -134,7 +134,7 @@ fn times_are_taken_without_waiting() {
     }
     // One copy, passes along 20 columns and along 9 rows, and a search, two stamps each.
     let settings = settings();
-    let samples = settings.sat_samples.count();
+    let samples = settings.laboratory.sat_samples.count();
     let passes = |side: u32| (0..6).map(|pass| u64::from(samples.pow(pass) < side)).sum::<u64>();
     let passes = 1 + passes(20) + passes(9) + 1;
     assert_eq!(calls.of("glQueryCounter"), 6 * 2 * passes);

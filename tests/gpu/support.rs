@@ -4,7 +4,8 @@ use glam::UVec2;
 use varikernel::context::{self, Candidate, DeviceChoice};
 use varikernel::image::Difference;
 use varikernel::settings::{
-    Edges, Matching, Method, Order, SatBuild, SatSamples, Search, Settings, Split, Storage,
+    Edges, Laboratory, Matching, Method, Order, Planning, SatBuild, SatSamples, Search, Settings, Split,
+    Storage,
 };
 use varikernel::{CountBounds, DensityMap, Gl, Image, RadiusPipeline, maps::exactness, reference};
 
@@ -13,6 +14,11 @@ use crate::osmesa::osmesa_is_here;
 /// The first EGL device that works, or the reason why none does.
 pub(crate) fn egl() -> Gl {
     context::open(&DeviceChoice::Egl(None)).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// The same, planned frame by frame.
+pub(crate) fn planned(settings: Settings) -> Settings {
+    Settings { planning: Planning::EachFrame, ..settings }
 }
 
 /// Every way to a context that works here: EGL may list devices that this user may not open.
@@ -92,15 +98,29 @@ pub(crate) fn exact_variants(search: Search) -> Vec<Settings> {
                 (Split::Larger, Matching::Bits),
                 (Split::Larger, Matching::Modulo),
             ] {
-                variants.push(Settings { method: Method::Pyramid, split, matching, ..base });
+                variants.push(Settings {
+                    method: Method::Pyramid,
+                    laboratory: Laboratory { split, matching, ..base.laboratory },
+                    ..base
+                });
             }
-            let table = Settings { method: Method::SummedAreaTable, sat_build: SatBuild::Doubling, ..base };
-            variants.extend(SatSamples::ALL.map(|sat_samples| Settings { sat_samples, ..table }));
+            let table = Settings {
+                method: Method::SummedAreaTable,
+                laboratory: Laboratory { sat_build: SatBuild::Doubling, ..base.laboratory },
+                ..base
+            };
+            variants.extend(SatSamples::ALL.map(|sat_samples| Settings {
+                laboratory: Laboratory { sat_samples, ..table.laboratory },
+                ..table
+            }));
             let bracketed = Settings { search: Search { order: Order::Bracketed, ..search }, ..table };
             variants.push(bracketed);
             if storage == Storage::U32 {
                 for table in [table, bracketed] {
-                    let scanned = Settings { sat_build: SatBuild::Scan, ..table };
+                    let scanned = Settings {
+                        laboratory: Laboratory { sat_build: SatBuild::Scan, ..table.laboratory },
+                        ..table
+                    };
                     variants.extend([scanned, in_16_bits(table), in_16_bits(scanned)]);
                 }
             }

@@ -3,7 +3,7 @@
 use glam::UVec2;
 use varikernel::gl::TextureFormat;
 use varikernel::settings::{
-    Edges, Faults, Matching, Method, Order, Search, Settings, Split, Storage, Variation,
+    Edges, Faults, Laboratory, Matching, Method, Order, Search, Settings, Split, Storage, Variation,
 };
 use varikernel::{CountBounds, DensityMap, Error, Image, RadiusPipeline, reference};
 
@@ -12,9 +12,10 @@ use crate::support::{assert_same, egl, exact_variants, on_gpu, osmesa, random_ma
 
 /// Every exact method that `variation` fits, with every variant of it.
 fn varied(variation: Variation, search: Search) -> Vec<Settings> {
-    let all = exact_variants(search)
-        .into_iter()
-        .map(|settings| Settings { variation: Some(variation), ..settings });
+    let all = exact_variants(search).into_iter().map(|settings| Settings {
+        laboratory: Laboratory { variation: Some(variation), ..settings.laboratory },
+        ..settings
+    });
     let fitting: Vec<_> = all.filter(|settings| settings.validate().is_ok()).collect();
     assert!(!fitting.is_empty(), "{variation:?}");
     fitting
@@ -101,8 +102,8 @@ fn reused_sums_are_exact_up_to_the_last_radius_that_llvmpipe_allows() {
     let settings = |max_radius| Settings {
         search: Search { order: Order::Forward, ..search(1, max_radius, Edges::Zero) },
         method: Method::BruteForce,
-        variation: Some(Variation::ReusedSums),
         limited_mask: true,
+        laboratory: Laboratory { variation: Some(Variation::ReusedSums), ..Laboratory::default() },
         ..Settings::default()
     };
     let largest = 254;
@@ -126,7 +127,7 @@ fn varied_searches_longer_than_llvmpipe_allows_in_a_pass_are_exact() {
         Settings {
             search: forward(60),
             method: Method::BruteForce,
-            variation: Some(Variation::FetchesAtOnce),
+            laboratory: Laboratory { variation: Some(Variation::FetchesAtOnce), ..base.laboratory },
             ..base
         },
         60,
@@ -141,9 +142,12 @@ fn varied_searches_longer_than_llvmpipe_allows_in_a_pass_are_exact() {
             Settings {
                 search: forward(max_radius),
                 method: Method::Pyramid,
-                split,
-                matching,
-                variation: Some(Variation::WholeStrips),
+                laboratory: Laboratory {
+                    split,
+                    matching,
+                    variation: Some(Variation::WholeStrips),
+                    ..base.laboratory
+                },
                 ..base
             },
             max_radius,
@@ -162,13 +166,19 @@ fn a_variation_that_does_not_fit_is_refused_by_name() {
             let settings = Settings {
                 search: Search { order: Order::Forward, ..search(25, 8, Edges::Zero) },
                 method,
-                variation: Some(variation),
+                laboratory: Laboratory { variation: Some(variation), ..Laboratory::default() },
                 ..Settings::default()
             };
             if method == variation.method() {
                 settings.validate().unwrap();
                 let faults = Faults { float_ratio: true, ..Faults::NONE };
-                assert!(refused(Settings { faults, ..settings }).contains("faults"));
+                assert!(
+                    refused(Settings {
+                        laboratory: Laboratory { faults, ..settings.laboratory },
+                        ..settings
+                    })
+                    .contains("faults")
+                );
             } else {
                 assert!(refused(settings).contains("varies"));
             }
@@ -191,7 +201,8 @@ fn every_counting_variation_has_a_shader_of_its_own() {
                     .map(varikernel::gl::ShaderSource::fragment)
                     .collect::<Vec<_>>()
             };
-            let plain = Settings { variation: None, ..settings };
+            let plain =
+                Settings { laboratory: Laboratory { variation: None, ..settings.laboratory }, ..settings };
             assert_eq!(text(&settings) == text(&plain), variation == Variation::UnfinishedTexels);
         }
     }

@@ -2,7 +2,6 @@
 
 use comfy_table::presets::NOTHING;
 use comfy_table::{CellAlignment, ContentArrangement, Table};
-use varikernel::settings::Order;
 use varikernel_lab::bench::{AUTO, Case, Stage};
 
 /// Columns of a terminal that tables fit into.
@@ -25,9 +24,7 @@ pub(super) fn align_right(table: &mut Table, columns: std::ops::RangeInclusive<u
 
 pub(super) fn order(case: &Case) -> &'static str {
     match (case.search, case.stage) {
-        (Some(Order::Forward), _) => "forward",
-        (Some(Order::Binary), _) => "binary",
-        (Some(Order::Bracketed), _) => "bracketed",
+        (Some(order), _) => order.name(),
         (None, Stage::Copy | Stage::Probe | Stage::Build | Stage::Certify) => "",
         (None, Stage::Frame) if case.variant == AUTO => "planned",
         (None, Stage::Search | Stage::Frame) => "its own",

@@ -4,7 +4,6 @@ use std::path::Path;
 use std::time::Duration;
 
 use anyhow::Result;
-use varikernel::settings::Edges;
 use varikernel_lab::bench::{Case, Device, Report, Run, Verdict, compare};
 
 use super::cells::{align_right, new_table, order, three_digits};
@@ -243,11 +242,7 @@ fn heading(case: &Case) -> String {
     let map = map_name(case);
     match (case.min_photons, case.max_radius, case.edges) {
         (Some(n), Some(radius), Some(edges)) => {
-            let edges = match edges {
-                Edges::Zero => "zero",
-                Edges::Scale => "scale",
-            };
-            format!("{map}: n {n}, MR {radius}, edges {edges}")
+            format!("{map}: n {n}, MR {radius}, edges {}", edges.name())
         }
         _ => map,
     }

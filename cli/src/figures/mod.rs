@@ -21,7 +21,8 @@ use varikernel_lab::{LightError, PictureError, ReferenceHalves};
 use self::regions::{RegionErrors, Regions};
 use super::numbers::whole_checked_later;
 use super::photons::load;
-use super::render::{Bar, Source, in_words_of_options};
+use super::render::{Bar, Source};
+use super::words::in_words_of_options;
 use super::{Outcome, device, output};
 
 /// Fixed radii that are tried for the best one.

@@ -12,14 +12,15 @@ use varikernel::image::{
     self, Attribute, Format, Picture, ReadOptions, read_counts, write_counts, write_picture,
 };
 use varikernel::radius::Census;
-use varikernel::radius::planner::{self, Choice};
-use varikernel::settings::{Exactness, Settings, Storage};
+use varikernel::radius::planner::{self, Decision};
+use varikernel::settings::{Exactness, Laboratory, Settings, Storage};
 use varikernel::{
     Certificate, CountBounds, DensityMap, Error, Frame, Image, Mask, RadiusPipeline, reference,
 };
 use varikernel_lab::{RadiusSummary, total_photons};
 
 use super::method_options::MethodOptions;
+use super::words::in_words_of_options;
 use super::{Outcome, device, output};
 use report::{MapReport, Report, Timing};
 
@@ -85,7 +86,7 @@ pub(crate) struct Args {
 pub(crate) fn run(args: &Args) -> Result<Outcome> {
     // What can be refused without computing is refused first.
     let settings = settings(args);
-    let explain = |error| in_words_of_options(error, &args.map);
+    let explain = |error| explain(error, &args.map);
     settings.validate().map_err(explain)?;
     if args.certify {
         Certificate::check_possible(&settings).map_err(explain)?;
@@ -98,8 +99,8 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     tracing::info!(renderer = gl.info().renderer, "opened");
     check_fits(args, &counts, gl.info())?;
 
-    let choice = planned(args, settings, &counts);
-    let settings = choice.as_ref().map_or(settings, |choice| choice.settings);
+    let decision = planned(args, settings, &counts);
+    let settings = decision.as_ref().map_or(settings, |decision| decision.settings);
     let bounds = match settings.storage {
         Storage::U16 => CountBounds::of_boxes(&counts, settings.search),
         _ => CountBounds::of(&counts, settings.search),
@@ -152,7 +153,7 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
         output: &args.output,
         limited_mask: args.limited_mask.as_deref(),
         settings,
-        planned: choice.as_ref().map(|choice| choice.reason.as_str()),
+        planned: decision.as_ref().map(|decision| decision.reason.as_str()),
         device: gl.info(),
         plan,
         radius: RadiusSummary::of(&radii),
@@ -172,11 +173,11 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     Ok(if differs || is_unproved { Outcome::Differs } else { Outcome::Done })
 }
 
-/// The planner's choice, where nothing else is asked for.
-fn planned(args: &Args, settings: Settings, counts: &Image<u32>) -> Option<Choice> {
+/// What the planner decides, where nothing else is asked for.
+fn planned(args: &Args, settings: Settings, counts: &Image<u32>) -> Option<Decision> {
     args.method.is_free().then(|| {
         let bounds = CountBounds::of(counts, settings.search);
-        planner::choose(&settings, counts.size(), Some(&Census::of(counts)), bounds)
+        planner::decide(&settings, counts.size(), Some(&Census::of(counts)), bounds)
     })
 }
 
@@ -197,17 +198,14 @@ fn read_mask(path: &Path, counts: &Image<u32>) -> Result<Image<u8>> {
 }
 
 /// An error of the library, with the option to change and the file concerned.
-fn in_words_of_options(error: Error, map: &Path) -> anyhow::Error {
+fn explain(error: Error, map: &Path) -> anyhow::Error {
     match error {
-        Error::Setting { name, value, reason } => {
-            anyhow!("--{} {value} is not possible: {reason}", name.replace('_', "-"))
-        }
         Error::Inexact { reason, remedy } => anyhow!(
             "{}: the result would not be exact: {reason}\nhelp: {remedy}, or add --allow-inexact to see \
              how wrong it gets",
             map.display()
         ),
-        other => other.into(),
+        other => in_words_of_options(other),
     }
 }
 
@@ -239,10 +237,12 @@ fn check_fits(args: &Args, counts: &Image<u32>, device: &DeviceInfo) -> Result<(
     Ok(())
 }
 
-/// The settings by the arguments; where the planner may choose, its choice without a map.
+/// The settings by the arguments; where the planner may decide, its decision without a map.
 fn settings(args: &Args) -> Settings {
     let exactness = if args.allow_inexact { Exactness::Waived } else { Exactness::Required };
-    Settings { exactness, limited_mask: true, masked: args.mask.is_some(), ..args.method.settings() }
+    let asked = args.method.settings();
+    let laboratory = Laboratory { exactness, ..asked.laboratory };
+    Settings { limited_mask: true, masked: args.mask.is_some(), laboratory, ..asked }
 }
 
 fn write_radius(args: &Args, settings: &Settings, device: &DeviceInfo, radius: &Image<u32>) -> Result<()> {

@@ -103,7 +103,7 @@ fn exactness(report: &Report<'_>) -> &'static str {
         "yes"
     } else if !report.settings.method.is_exact() {
         "no, the method approximates"
-    } else if report.settings.faults != Faults::NONE {
+    } else if report.settings.laboratory.faults != Faults::NONE {
         "no, the listings run with their printed faults"
     } else {
         "not proved, sums may round or wrap"

@@ -15,12 +15,13 @@ use varikernel::render::{Progress, Renderer};
 use varikernel::settings::{DirectLight, Estimate, FirstBounce, PictureSettings, RadiusChoice};
 
 pub(super) use bar::Bar;
-pub(super) use source::{Source, in_words_of_options};
+pub(super) use source::Source;
 
 use self::files::{attributes, write};
 use self::report::Report;
 use super::numbers::whole_checked_later;
 use super::photons::load;
+use super::words::in_words_of_options;
 use super::{Outcome, device, output};
 
 /// Render a scene by photons whose kernels fit their density.

@@ -10,8 +10,9 @@ use varikernel::scene::Scene;
 use varikernel::settings::PictureSettings;
 
 use super::files::{reference_attributes, write};
-use super::{Args, Bar, in_words_of_options};
+use super::{Args, Bar};
 use crate::saving::{Autosave, Resume, how_to_go_on};
+use crate::words::in_words_of_options;
 use crate::{Outcome, output};
 
 /// A reference that takes long is saved as often as this.

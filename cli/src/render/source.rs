@@ -5,11 +5,11 @@ use std::sync::LazyLock;
 
 use anyhow::{Result, bail};
 use glam::UVec2;
+use varikernel::Image;
 use varikernel::context::DeviceChoice;
 use varikernel::image::ToneMap;
 use varikernel::photon::TraceSettings;
 use varikernel::settings::{Kernel, MAX_PICTURE_RADIUS, PictureSettings};
-use varikernel::{Error, Image};
 
 use crate::numbers::{fraction, whole, whole_checked_later};
 use crate::photons::parse_count;
@@ -110,15 +110,5 @@ impl Source {
     pub(crate) fn tone_map(&self, picture: &Image<[f32; 3]>) -> ToneMap {
         let fitting = ToneMap::fitting(picture);
         ToneMap { exposure: self.exposure.unwrap_or(fitting.exposure), ..fitting }
-    }
-}
-
-/// The message of `error` for a setting that an option gave.
-pub(crate) fn in_words_of_options(error: Error) -> anyhow::Error {
-    match error {
-        Error::Setting { name, value, reason } => {
-            anyhow::anyhow!("--{} {value} is not possible: {reason}", name.replace('_', "-"))
-        }
-        other => other.into(),
     }
 }

@@ -257,5 +257,5 @@ fn the_printed_faults_are_not_certified() {
 
     let refused = place.run("radius map.npy -o radius.npy --method pyramid --certify").code(2);
     let words = String::from_utf8_lossy(&refused.get_output().stderr).into_owned();
-    assert!(words.contains("--method Pyramid is not possible"), "{words}");
+    assert!(words.contains("--method pyramid is not possible"), "{words}");
 }

@@ -181,7 +181,7 @@ fn what_can_not_be_is_refused() {
         ("-o old.npy --photons nan", ["--photons", "whole number"]),
         ("-o old.npy --photons 5e9", ["--photons", "whole number"]),
         ("-o old.npy --photons many", ["--photons", "1e6"]),
-        ("-o old.npy --bounces 0", ["bounces = 0 is not possible", "at least 1"]),
+        ("-o old.npy --bounces 0", ["--bounces 0 is not possible", "at least 1"]),
         ("-o old.npy --threads 0", ["--threads 0 is not possible", "at least 1"]),
         ("", ["--output <FILE>", "required"]),
     ] {

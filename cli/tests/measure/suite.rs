@@ -65,7 +65,7 @@ fn every_row_is_there_with_the_right_answer() {
 #[test]
 fn a_planted_fault_is_seen_in_every_frame_that_counts() {
     let mut settings = settings();
-    settings.base.faults = Faults { border_test: true, ..Faults::NONE };
+    settings.base.laboratory.faults = Faults { border_test: true, ..Faults::NONE };
     settings.base.search.order = Order::Binary;
     let maps = settings.suite.as_ref().unwrap().maps();
     let caustic = maps.into_iter().find(|map| map.info.name == "caustic" && map.info.size == SIZE).unwrap();

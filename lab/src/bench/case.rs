@@ -113,8 +113,8 @@ impl Case {
         let Settings { search, method, .. } = *settings;
         let is_table = method == Method::SummedAreaTable;
         let builds = is_table && stage != Stage::Search;
-        let sat_samples =
-            (builds && settings.sat_build == SatBuild::Doubling).then_some(settings.sat_samples);
+        let sat_samples = (builds && settings.laboratory.sat_build == SatBuild::Doubling)
+            .then_some(settings.laboratory.sat_samples);
         let mut variant = match sat_samples {
             Some(samples) => format!("sat-doubling-{}", samples.count()),
             None if builds => "sat-scan".to_owned(),

@@ -9,7 +9,9 @@ use serde::{Deserialize, Serialize};
 use super::suite::FastSuite;
 use crate::rivals::Rival;
 use varikernel::image::Image;
-use varikernel::settings::{Edges, Method, Order, SatBuild, SatSamples, Search, Settings, Storage};
+use varikernel::settings::{
+    Edges, Laboratory, Method, Order, SatBuild, SatSamples, Search, Settings, Storage,
+};
 
 /// How often a case is repeated.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -95,8 +97,13 @@ impl BenchSettings {
         for &method in &self.methods {
             for search in self.questions() {
                 for (storage, sat_build, sat_samples) in self.builds_of(method) {
-                    let mut settings =
-                        Settings { search, method, sat_build, sat_samples, storage, ..self.base };
+                    let mut settings = Settings {
+                        search,
+                        method,
+                        storage,
+                        laboratory: Laboratory { sat_build, sat_samples, ..self.base.laboratory },
+                        ..self.base
+                    };
                     if method == Method::NaiveMipmap {
                         // It has a search of its own, to which the order does not apply.
                         settings.search.order = Settings::of(method).search.order;
@@ -114,12 +121,16 @@ impl BenchSettings {
 
     fn builds_of(&self, method: Method) -> Vec<(Storage, SatBuild, SatSamples)> {
         if method != Method::SummedAreaTable {
-            return vec![(self.base.storage, self.base.sat_build, self.base.sat_samples)];
+            return vec![(
+                self.base.storage,
+                self.base.laboratory.sat_build,
+                self.base.laboratory.sat_samples,
+            )];
         }
         let storages = if self.storages.is_empty() { &[self.base.storage][..] } else { &self.storages };
         let samples_of = |build: &SatBuild| match build {
             SatBuild::Doubling => self.sat_samples.clone(),
-            SatBuild::Scan => vec![self.base.sat_samples],
+            SatBuild::Scan => vec![self.base.laboratory.sat_samples],
         };
         let mut builds = Vec::new();
         for &storage in storages {

@@ -17,7 +17,7 @@ use varikernel::maps::DensityMap;
 use varikernel::measure::{Unit, UnitPass};
 use varikernel::radius::Census;
 use varikernel::radius::RadiusPipeline;
-use varikernel::radius::planner::{self, Choice};
+use varikernel::radius::planner::{self, Decision};
 use varikernel::reference;
 use varikernel::settings::{Order, Search, Settings, Storage};
 
@@ -29,7 +29,7 @@ pub(super) struct Workbench {
     units: Vec<(Unit, UnitPass)>,
     pipelines: Vec<RadiusPipeline>,
     /// What the planner chose for which settings.
-    choices: Vec<(Settings, Choice)>,
+    decisions: Vec<(Settings, Decision)>,
     scenes: Vec<(Situation, Scene)>,
     rivals: Rivals,
     /// The definition's radii.
@@ -57,7 +57,7 @@ impl Workbench {
             density,
             units: Vec::new(),
             pipelines: Vec::new(),
-            choices: Vec::new(),
+            decisions: Vec::new(),
             scenes: Vec::new(),
             rivals: Rivals::default(),
             answers: Vec::new(),
@@ -75,12 +75,12 @@ impl Workbench {
             }
             Work::Pipeline(settings) => self.prepare_pipeline(settings)?,
             Work::Planned(settings) => {
-                if !self.choices.iter().any(|(known, _)| *known == settings) {
+                if !self.decisions.iter().any(|(known, _)| *known == settings) {
                     let census = Census::of(&self.counts);
-                    let choice = planner::choose(&settings, size, Some(&census), self.density.bounds());
-                    self.choices.push((settings, choice));
+                    let decision = planner::decide(&settings, size, Some(&census), self.density.bounds());
+                    self.decisions.push((settings, decision));
                 }
-                self.prepare_pipeline(self.choice(settings).settings)?;
+                self.prepare_pipeline(self.decision(settings).settings)?;
             }
             Work::Situation(situation, settings) => {
                 self.prepare_pipeline(settings)?;
@@ -158,7 +158,7 @@ impl Workbench {
                     _ => pipeline.render(&self.density).map(drop),
                 }
             }
-            Work::Planned(settings) => self.run_once(Work::Pipeline(self.choice(settings).settings), stage),
+            Work::Planned(settings) => self.run_once(Work::Pipeline(self.decision(settings).settings), stage),
             Work::Situation(situation, settings) => {
                 find_scene(&mut self.scenes, situation).run(find(&mut self.pipelines, settings))
             }
@@ -186,7 +186,7 @@ impl Workbench {
                 Ok(Difference::between(&found, self.answer(settings.search))?.wrong_pixels)
             }
             Work::Planned(settings) => {
-                self.wrong_pixels(stage, Work::Pipeline(self.choice(settings).settings))
+                self.wrong_pixels(stage, Work::Pipeline(self.decision(settings).settings))
             }
             Work::Situation(situation, settings) => {
                 find_scene(&mut self.scenes, situation).wrong_pixels(find(&mut self.pipelines, settings))
@@ -210,15 +210,15 @@ impl Workbench {
         Some(radii.values().iter().map(|&radius| f64::from(radius)).sum::<f64>() / size.element_product())
     }
 
-    /// What the planner chose, and why.
+    /// What the planner decided, and why.
     pub(super) fn planned(&self, work: Work) -> Option<String> {
         let Work::Planned(settings) = work else { return None };
-        let Choice { settings, reason } = self.choice(settings);
+        let Decision { settings, reason } = self.decision(settings);
         Some(format!("{}: {reason}", settings.search.order.name()))
     }
 
-    fn choice(&self, settings: Settings) -> &Choice {
-        &self.choices.iter().find(|(known, _)| *known == settings).expect("prepared").1
+    fn decision(&self, settings: Settings) -> &Decision {
+        &self.decisions.iter().find(|(known, _)| *known == settings).expect("prepared").1
     }
 
     /// The definition's radii, which no order changes.

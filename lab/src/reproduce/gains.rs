@@ -13,7 +13,9 @@ use varikernel::maps::CountBounds;
 use varikernel::maps::DensityMap;
 use varikernel::radius::RadiusPipeline;
 use varikernel::reference;
-use varikernel::settings::{Edges, Matching, Method, Order, SatSamples, Search, Settings, Variation};
+use varikernel::settings::{
+    Edges, Laboratory, Matching, Method, Order, SatSamples, Search, Settings, Variation,
+};
 
 /// Most samples of each side of a gain.
 const SAMPLES: usize = 60;
@@ -33,7 +35,10 @@ fn changes() -> Vec<Change> {
     let binary = Settings { search: Search { order: Order::Binary, ..thesis.search }, ..thesis };
     let brute_force = Settings { method: Method::BruteForce, ..thesis };
     let pyramid = Settings { method: Method::Pyramid, ..thesis };
-    let varied = |before: Settings, variation| Settings { variation: Some(variation), ..before };
+    let varied = |before: Settings, variation| Settings {
+        laboratory: Laboratory { variation: Some(variation), ..before.laboratory },
+        ..before
+    };
     let frame = |id, what, before, after| Change { id, what, before, after, build_only: false };
     let build = |id, what, before, after| Change { id, what, before, after, build_only: true };
     vec![
@@ -59,20 +64,32 @@ fn changes() -> Vec<Change> {
             "future-pyramid-bits",
             "pyramid, forward",
             pyramid,
-            Settings { matching: Matching::Bits, ..pyramid },
+            Settings { laboratory: Laboratory { matching: Matching::Bits, ..pyramid.laboratory }, ..pyramid },
         ),
         frame("future-pyramid-strips", "pyramid, forward", pyramid, varied(pyramid, Variation::WholeStrips)),
         build(
             "future-sat-samples",
             "table, 8 samples a pass against 4, build alone",
             thesis,
-            Settings { sat_samples: SatSamples::Eight, ..thesis },
+            Settings {
+                laboratory: Laboratory { sat_samples: SatSamples::Eight, ..thesis.laboratory },
+                ..thesis
+            },
         ),
         build(
             "future-sat-scissor",
             "table, 2 samples a pass, build alone",
-            Settings { sat_samples: SatSamples::Two, ..thesis },
-            varied(Settings { sat_samples: SatSamples::Two, ..thesis }, Variation::UnfinishedTexels),
+            Settings {
+                laboratory: Laboratory { sat_samples: SatSamples::Two, ..thesis.laboratory },
+                ..thesis
+            },
+            varied(
+                Settings {
+                    laboratory: Laboratory { sat_samples: SatSamples::Two, ..thesis.laboratory },
+                    ..thesis
+                },
+                Variation::UnfinishedTexels,
+            ),
         ),
         frame(
             "future-sat-select",

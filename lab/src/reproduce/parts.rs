@@ -225,12 +225,7 @@ pub fn other_maps(run: &RunFile) -> Vec<OtherMap> {
                 run.case.map == map.name && wanted.contains(&run.case.stage) && !run.is_wrong()
             });
         let times = runs.map(|run| {
-            let order = match run.case.search {
-                Some(Order::Forward) => " forward",
-                Some(Order::Binary) => " binary",
-                Some(Order::Bracketed) => " bracketed",
-                None => "",
-            };
+            let order = run.case.search.map_or_else(String::new, |order| format!(" {}", order.name()));
             let name = format!("{} {}{order}", run.case.stage.name(), run.case.variant);
             (name, run.statistics.median_ms, run.copies)
         });

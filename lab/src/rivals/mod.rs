@@ -63,7 +63,7 @@ impl Rival {
             Self::Kiddo => {
                 return Err(Error::Setting {
                     name: "edges",
-                    value: format!("{:?}", search.edges).to_lowercase(),
+                    value: search.edges.name().to_owned(),
                     reason: "a search for the nearest photons supports zero edges only".to_owned(),
                 });
             }

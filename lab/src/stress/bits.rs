@@ -13,7 +13,7 @@ use varikernel::maps::CountBounds;
 use varikernel::maps::DensityMap;
 use varikernel::radius::RadiusPipeline;
 use varikernel::reference;
-use varikernel::settings::{Edges, Method, Order, SatBuild, Search, Settings, Storage};
+use varikernel::settings::{Edges, Laboratory, Method, Order, SatBuild, Search, Settings, Storage};
 
 /// One map and one way to its radii.
 #[derive(Clone, Debug)]
@@ -68,7 +68,11 @@ type Made = Result<(DensityMap, RadiusPipeline), String>;
 pub fn cases() -> Vec<Case> {
     let usual = Settings::default();
     let search = Search { min_photons: 25, max_radius: 12, edges: Edges::Scale, order: Order::Binary };
-    let doubling = Settings { search, sat_build: SatBuild::Doubling, ..usual };
+    let doubling = Settings {
+        search,
+        laboratory: Laboratory { sat_build: SatBuild::Doubling, ..usual.laboratory },
+        ..usual
+    };
     let ways = [
         ("auto", Settings { search: Search { order: Order::Bracketed, ..search }, ..usual }),
         ("doubling", doubling),

@@ -15,7 +15,7 @@ use varikernel::image::Image;
 use varikernel::maps::DensityMap;
 use varikernel::maps::exactness::{self, CountBounds};
 use varikernel::radius::RadiusPipeline;
-use varikernel::settings::{Edges, Exactness, Faults, Order, Search, Settings, Storage};
+use varikernel::settings::{Edges, Exactness, Faults, Laboratory, Order, Search, Settings, Storage};
 
 const SEED: u64 = 1;
 /// From this side on, no more than one number has its textures allocated.
@@ -98,7 +98,7 @@ impl Subject<'_> {
         let Self { counts, exact, search, number } = *self;
         let mut settings = number.settings(search);
         if planted && number == Number::F32Doubling4 {
-            settings.faults = Faults { border_test: true, ..Faults::NONE };
+            settings.laboratory.faults = Faults { border_test: true, ..Faults::NONE };
         }
         let size = counts.size();
         let clamped =
@@ -115,7 +115,13 @@ impl Subject<'_> {
         };
         let (decision, computed) = match plan {
             Ok(_) => (Decision::Accepted, settings),
-            Err(_) => (Decision::Refused, Settings { exactness: Exactness::Waived, ..settings }),
+            Err(_) => (
+                Decision::Refused,
+                Settings {
+                    laboratory: Laboratory { exactness: Exactness::Waived, ..settings.laboratory },
+                    ..settings
+                },
+            ),
         };
         let found = bench.pipeline(gl, size, computed)?.render(&density)?.read()?;
         let difference = Difference::between(&found, exact)?;

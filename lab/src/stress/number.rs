@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use varikernel::settings::{Order, SatBuild, SatSamples, Search, Settings, Storage};
+use varikernel::settings::{Laboratory, Order, SatBuild, SatSamples, Search, Settings, Storage};
 
 /// In what sums are kept, and how they come about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -67,8 +67,11 @@ impl Number {
 
     pub(super) fn settings(self, search: Search) -> Settings {
         let usual = Settings { search, ..Settings::default() };
-        let float =
-            |storage, sat_samples| Settings { storage, sat_samples, sat_build: SatBuild::Doubling, ..usual };
+        let float = |storage, sat_samples| Settings {
+            storage,
+            laboratory: Laboratory { sat_samples, sat_build: SatBuild::Doubling, ..usual.laboratory },
+            ..usual
+        };
         match self {
             Self::U32Scan => Settings { search: Search { order: Order::Bracketed, ..search }, ..usual },
             Self::U32Doubling => float(Storage::U32, SatSamples::Four),

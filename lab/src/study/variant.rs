@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use varikernel::measure::STEPS;
 use varikernel::settings::{
-    Exactness, Faults, Method, Order, SatBuild, SatSamples, Search, Settings, Split, Storage,
+    Exactness, Faults, Laboratory, Method, Order, SatBuild, SatSamples, Search, Settings, Split, Storage,
 };
 
 /// Numbers that tables are kept in by every build; others by 4 samples a pass alone.
@@ -71,7 +71,11 @@ pub(super) fn all(question: Search) -> Vec<Variant> {
             twist: "no guard".to_owned(),
             ..name_of(&Settings { storage: Storage::U16, ..fast })
         },
-        way: Way::Unguarded(Settings { storage: Storage::U16, exactness: Exactness::Waived, ..fast }),
+        way: Way::Unguarded(Settings {
+            storage: Storage::U16,
+            laboratory: Laboratory { exactness: Exactness::Waived, ..fast.laboratory },
+            ..fast
+        }),
     });
     variants.extend(as_printed(question).into_iter().map(|settings| {
         let name = VariantName { twist: "as printed".to_owned(), ..name_of(&settings) };
@@ -117,8 +121,11 @@ impl Variant {
 fn pipelines(question: Search) -> Vec<Settings> {
     let usual = Settings {
         search: question,
-        exactness: Exactness::Waived,
-        sat_build: SatBuild::Doubling,
+        laboratory: Laboratory {
+            exactness: Exactness::Waived,
+            sat_build: SatBuild::Doubling,
+            ..Laboratory::default()
+        },
         ..Settings::default()
     };
     let mut all = Vec::new();
@@ -128,8 +135,14 @@ fn pipelines(question: Search) -> Vec<Settings> {
                 let one = Settings { method, storage, search: Search { order, ..question }, ..usual };
                 match method {
                     Method::SummedAreaTable => {
-                        all.extend(SatSamples::ALL.map(|sat_samples| Settings { sat_samples, ..one }));
-                        all.push(Settings { sat_build: SatBuild::Scan, ..one });
+                        all.extend(SatSamples::ALL.map(|sat_samples| Settings {
+                            laboratory: Laboratory { sat_samples, ..one.laboratory },
+                            ..one
+                        }));
+                        all.push(Settings {
+                            laboratory: Laboratory { sat_build: SatBuild::Scan, ..one.laboratory },
+                            ..one
+                        });
                     }
                     // Its search is a climb of its own.
                     Method::NaiveMipmap if order != Order::Forward => (),
@@ -151,21 +164,30 @@ fn pipelines(question: Search) -> Vec<Settings> {
 fn as_printed(question: Search) -> Vec<Settings> {
     let thesis = Settings {
         search: Search { order: Order::Binary, ..question },
-        faults: Faults::AS_PRINTED,
-        exactness: Exactness::Waived,
+        laboratory: Laboratory {
+            faults: Faults::AS_PRINTED,
+            exactness: Exactness::Waived,
+            ..Settings::thesis().laboratory
+        },
         ..Settings::thesis()
     };
     vec![
-        Settings { sat_samples: SatSamples::Two, ..thesis },
+        Settings { laboratory: Laboratory { sat_samples: SatSamples::Two, ..thesis.laboratory }, ..thesis },
         thesis,
-        Settings { method: Method::Pyramid, split: Split::Odd, ..thesis },
+        Settings {
+            method: Method::Pyramid,
+            laboratory: Laboratory { split: Split::Odd, ..thesis.laboratory },
+            ..thesis
+        },
     ]
 }
 
 fn name_of(settings: &Settings) -> VariantName {
-    let build = match (settings.method, settings.sat_build) {
+    let build = match (settings.method, settings.laboratory.sat_build) {
         (Method::SummedAreaTable, SatBuild::Scan) => "scan".to_owned(),
-        (Method::SummedAreaTable, SatBuild::Doubling) => format!("doubling-{}", settings.sat_samples.count()),
+        (Method::SummedAreaTable, SatBuild::Doubling) => {
+            format!("doubling-{}", settings.laboratory.sat_samples.count())
+        }
         _ => String::new(),
     };
     let search = match settings.method {

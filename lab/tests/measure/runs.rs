@@ -59,7 +59,7 @@ fn every_case_has_its_samples_and_the_right_answer() {
 #[test]
 fn a_planted_wrong_answer_gets_no_rank() {
     let mut settings = settings();
-    settings.base.faults = Faults { border_test: true, ..Faults::NONE };
+    settings.base.laboratory.faults = Faults { border_test: true, ..Faults::NONE };
     let report = run(&settings, &[map()], None);
     // The fault is one of the table's; brute force does not have it.
     for run in report.runs.iter().filter(|run| run.case.method == Some(Method::SummedAreaTable)) {

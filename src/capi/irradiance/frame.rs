@@ -34,33 +34,35 @@ const _: () = assert!(
         && offset_of!(PlainPhoton, surface) == offset_of!(PhotonPoint, surface)
 );
 
-/// One frame of photons on surfaces. Fill it with varikernel_irradiance_frame_default, then say what you have.
+/// One frame of photons on surfaces. Fill it with varikernel_irradiance_frame_default, then say what you
+/// have.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct PlainIrradianceFrame {
     /// sizeof(varikernel_irradiance_frame), by which another version's struct is told.
     pub struct_size: u32,
-    /// A GL_TEXTURE_2D in GL_RGBA32F: the place that each pixel shows in scene units, and as fourth value its depth along the
-    /// view, 0 where nothing is seen. With from_depth, a texture with depth, drawn with the whole
-    /// depth range; it keeps its format and size.
+    /// A GL_TEXTURE_2D in GL_RGBA32F: the place that each pixel shows in scene units, and as fourth value its
+    /// depth along the view, 0 where nothing is seen. With from_depth, a texture with depth, drawn with the
+    /// whole depth range; it keeps its format and size.
     pub position_texture: u32,
-    /// A GL_TEXTURE_2D in GL_RGBA32F, GL_RGBA16F, GL_RGB32F or GL_RGB16F: the normal of length 1 towards the camera, and as
-    /// fourth value the surface's number from 1 on, negative where photons do not land, 0 where nothing is seen. Without
-    /// a fourth value all surfaces are number 1.
+    /// A GL_TEXTURE_2D in GL_RGBA32F, GL_RGBA16F, GL_RGB32F or GL_RGB16F: the normal of length 1 towards the
+    /// camera, and as fourth value the surface's number from 1 on, negative where photons do not land, 0
+    /// where nothing is seen. Without a fourth value all surfaces are number 1.
     pub normal_texture: u32,
     /// A vertex buffer of varikernel_photon.
     pub photon_buffer: u32,
     /// Photons to take from its beginning.
     pub photon_count: u32,
-    /// 1 to add these photons' light to that of the frames before, for the same surfaces and camera: of k such frames, the sum
-    /// is k times the light. 0 to forget those. Default 0.
+    /// 1 to add these photons' light to that of the frames before, for the same surfaces and camera: of k
+    /// such frames, the sum is k times the light. 0 to forget those. Default 0.
     pub added: u32,
     /// With from_depth: 1 if the far plane is at 0, else 0. Default 0.
     pub depth_reversed: u32,
-    /// With from_depth: 1 if depth in clip space goes from 0 to 1, as GL_ZERO_TO_ONE of glClipControl, else 0. Default 0.
+    /// With from_depth: 1 if depth in clip space goes from 0 to 1, as GL_ZERO_TO_ONE of glClipControl, else
+    /// 0. Default 0.
     pub depth_zero_to_one: u32,
-    /// From scene units to view space, where the camera looks along -z: column by column as for glUniformMatrix4fv. It turns
-    /// and moves only.
+    /// From scene units to view space, where the camera looks along -z: column by column as for
+    /// glUniformMatrix4fv. It turns and moves only.
     pub view: [f32; 16],
     /// From view space to clip space, column by column: a perspective with square pixels.
     pub projection: [f32; 16],
@@ -68,7 +70,8 @@ pub struct PlainIrradianceFrame {
 
 const SIZE: usize = size_of::<PlainIrradianceFrame>();
 
-/// Fills `frame` with the defaults, without textures, photons and camera. `size` is sizeof(varikernel_irradiance_frame).
+/// Fills `frame` with the defaults, without textures, photons and camera. `size` is
+/// sizeof(varikernel_irradiance_frame).
 ///
 /// Fails with INVALID_ARGUMENT.
 #[unsafe(no_mangle)]

@@ -32,9 +32,11 @@ struct Stages {
     positions: Positions,
 }
 
-/// Allocates and compiles for surfaces of `width` x `height` pixels. Takes milliseconds to seconds; frames only draw.
+/// Allocates and compiles for surfaces of `width` x `height` pixels. Takes milliseconds to seconds; frames
+/// only draw.
 ///
-/// `*irradiance` is the host's to destroy, before or after `context`. `settings` may be null for the defaults.
+/// `*irradiance` is the host's to destroy, before or after `context`. `settings` may be null for the
+/// defaults.
 ///
 /// Fails with SETTING, TOO_LARGE, SHADER, OUT_OF_MEMORY, OPEN_GL, INVALID_ARGUMENT, WRONG_THREAD, NO_CONTEXT.
 #[unsafe(no_mangle)]
@@ -65,16 +67,16 @@ pub unsafe extern "C" fn varikernel_irradiance_create(
 
 /// Finds the light that photons bring to the surfaces: counts them, finds radii, draws a kernel for each.
 ///
-/// `*irradiance_texture` is a GL_TEXTURE_2D in GL_RGBA32F, a sampler2D in your shaders: power per area in scene units,
-/// linear RGB; light that leaves a diffuse surface is albedo / pi of it. `*radius_texture` is as that of
-/// varikernel_render, or 0 for a fixed radius; the pointer may be null. Both belong to the handle and hold until its next
-/// frame.
+/// `*irradiance_texture` is a GL_TEXTURE_2D in GL_RGBA32F, a sampler2D in your shaders: power per area in
+/// scene units, linear RGB; light that leaves a diffuse surface is albedo / pi of it. `*radius_texture` is as
+/// that of varikernel_pipeline_render, or 0 for a fixed radius; the pointer may be null. Both belong to the
+/// handle and hold until its next frame.
 ///
-/// Waits for the GPU only where a pixel may hold 2^24 photons. With from_depth, a shader is compiled when a depth texture is
-/// first seen.
+/// Waits for the GPU only where a pixel may hold 2^24 photons. With from_depth, a shader is compiled when a
+/// depth texture is first seen.
 ///
-/// Fails with MISMATCH, INEXACT, SETTING, OUT_OF_MEMORY, CONTEXT_LOST, OPEN_GL, INVALID_ARGUMENT, WRONG_THREAD,
-/// NO_CONTEXT; the next frame may succeed.
+/// Fails with MISMATCH, INEXACT, SETTING, OUT_OF_MEMORY, CONTEXT_LOST, OPEN_GL, INVALID_ARGUMENT,
+/// WRONG_THREAD, NO_CONTEXT; the next frame may succeed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn varikernel_irradiance_render(
     irradiance: *mut Irradiance,
@@ -110,8 +112,9 @@ pub unsafe extern "C" fn varikernel_irradiance_render(
     })
 }
 
-/// Tells the memory that irradiance takes, before the handle is made: bytes of textures and buffers, as large as their formats
-/// say; surfaces, the positions of a depth buffer (16 bytes a pixel) and photons apart. `settings` may be null for the defaults.
+/// Tells the memory that irradiance takes, before the handle is made: bytes of textures and buffers, as large
+/// as their formats say; surfaces, the positions of a depth buffer (16 bytes a pixel) and photons apart.
+/// `settings` may be null for the defaults.
 ///
 /// Fails with SETTING, INVALID_ARGUMENT.
 #[unsafe(no_mangle)]
@@ -135,8 +138,8 @@ pub unsafe extern "C" fn varikernel_irradiance_memory_required(
 
 /// From now on for surfaces of another size, without photons. As varikernel_pipeline_resize.
 ///
-/// Fails with SETTING, TOO_LARGE, OUT_OF_MEMORY, CONTEXT_LOST, OPEN_GL, INVALID_ARGUMENT, WRONG_THREAD, NO_CONTEXT, and the
-/// handle then goes on at its old size.
+/// Fails with SETTING, TOO_LARGE, OUT_OF_MEMORY, CONTEXT_LOST, OPEN_GL, INVALID_ARGUMENT, WRONG_THREAD,
+/// NO_CONTEXT, and the handle then goes on at its old size.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn varikernel_irradiance_resize(
     irradiance: *mut Irradiance,
@@ -163,6 +166,7 @@ pub unsafe extern "C" fn varikernel_irradiance_resize(
 /// Fails with WRONG_THREAD and NO_CONTEXT, and frees nothing then.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn varikernel_irradiance_destroy(irradiance: *mut Irradiance) -> Status {
-    // SAFETY: the host gives a handle that `varikernel_irradiance_create` made and that was not destroyed, or null.
+    // SAFETY: the host gives a handle that `varikernel_irradiance_create` made and that was not destroyed, or
+    // null.
     unsafe { destroy(irradiance, |irradiance| irradiance.0.home()) }
 }

@@ -28,13 +28,15 @@ const KERNELS: [(u32, Kernel); 5] = [
     (VARIKERNEL_KERNEL_GAUSSIAN, Kernel::Gaussian),
 ];
 
-/// How photons become irradiance. Fill it with varikernel_irradiance_settings_default, then change what you like.
+/// How photons become irradiance. Fill it with varikernel_irradiance_settings_default, then change what you
+/// like.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct PlainIrradianceSettings {
     /// sizeof(varikernel_irradiance_settings), by which another version's struct is told.
     pub struct_size: u32,
-    /// 0 for kernels that fit the photons' density, else the radius of all kernels, 1 to 96 pixels. Default 0.
+    /// 0 for kernels that fit the photons' density, else the radius of all kernels, 1 to 96 pixels. Default
+    /// 0.
     pub fixed_radius: u32,
     /// n: photons that a kernel has to hold, at least 1. Default 400.
     pub min_photons: u32,
@@ -87,7 +89,8 @@ fn number_of(kernel: Kernel) -> u32 {
 }
 
 impl PlainIrradianceSettings {
-    /// The settings, and whether depth comes in place of positions. Ranges that the library checks are left to it.
+    /// The settings, and whether depth comes in place of positions. Ranges that the library checks are left
+    /// to it.
     pub(super) fn read(&self) -> Result<(IrradianceSettings, bool), Failure> {
         check_size("varikernel_irradiance_settings", self.struct_size, SIZE)?;
         let usual = IrradianceSettings::default();

@@ -1,7 +1,8 @@
-//! The radius of every k-th pixel of every k-th row, by halving: exact where it is found, and nothing between.
+//! The radius of every k-th pixel of every k-th row, by halving: exact where it is found, and nothing
+//! between.
 //!
-//! Cost: ⌈log2 MR⌉ boxes for one pixel in k². What lies between is somebody else's guess: radii with zero edges differ by
-//! no more than the distance of their pixels, with scaled edges by any amount.
+//! Cost: ⌈log2 MR⌉ boxes for one pixel in k². What lies between is somebody else's guess: radii with zero
+//! edges differ by no more than the distance of their pixels, with scaled edges by any amount.
 
 use glam::UVec2;
 

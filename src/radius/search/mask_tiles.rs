@@ -30,8 +30,12 @@ impl MaskTiles {
         (self.blocks, self.tiles) = (targets.take(), targets.take());
     }
 
-    /// 1 for each tile of 64 x 64 that has a pixel of the mask, else 0.
-    pub(super) fn reduce(&mut self, mask: &Mask) -> Result<&Texture> {
+    /// 1 for each tile of 64 x 64 that has a pixel of the mask, else 0; one texel for all if the mask has
+    /// one.
+    pub(super) fn reduce<'a>(&'a mut self, mask: &'a Mask) -> Result<&'a Texture> {
+        if mask.is_every_pixel() {
+            return Ok(mask.texture());
+        }
         reduce(&self.program, mask.texture(), &mut self.blocks)?;
         reduce(&self.program, self.blocks.texture(), &mut self.tiles)?;
         Ok(self.tiles.texture())

@@ -62,8 +62,8 @@ impl RadiusSearch {
         })
     }
 
-    /// What a search of that many passes allocates for maps of `size`, in the order in which [`resize`](Self::resize)
-    /// takes it.
+    /// What a search of that many passes allocates for maps of `size`, in the order in which
+    /// [`resize`](Self::resize) takes it.
     pub(crate) fn shapes(size: UVec2, settings: &Settings, passes: usize) -> Vec<TargetShape> {
         let mut shapes = match settings.search.order {
             Order::Forward | Order::Binary => stepwise::shapes(size, settings, passes),
@@ -158,7 +158,7 @@ fn search_source(density: TextureFormat, settings: &Settings, continued: Continu
         .variant_if(continued == Continued::Yes, "continued")
         .targets(RadiusMap::formats(settings.limited_mask))
         .define_if(settings.search.edges == Edges::Zero, "EDGES_ZERO")
-        .define_if(settings.faults.float_ratio, "FAULT_FLOAT_RATIO")
+        .define_if(settings.laboratory.faults.float_ratio, "FAULT_FLOAT_RATIO")
         .define_if(exactness::needs_wide_products(settings), "WIDE_PRODUCTS")
         .define_if(settings.limited_mask, "LIMITED_MASK")
         .define_if(settings.masked, "MASKED")

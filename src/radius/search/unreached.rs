@@ -36,7 +36,7 @@ pub(super) fn fill(
     frame: &Frame<'_>,
     radii: &mut RadiusMap,
 ) -> Result<()> {
-    if settings.masked {
+    if frame.leaves_out_pixels() {
         pass(settings, program, frame).fill(radii.target())
     } else {
         clear(settings, radii);

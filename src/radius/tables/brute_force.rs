@@ -3,10 +3,10 @@
 //! - Cost: (2r + 1)² fetches for radius r, anew for each radius tried, and no pass beside the search.
 //! - Memory: none beside the density map.
 //! - Exact while each box's sum fits the storage.
-//! - Against the thesis: boxes are cut to the map in the shader, where listing 4.1 reads outside the texture, which
-//!   GLSL leaves undefined; and a binary search is allowed, though 3.5 rightly calls it a bad fit.
-//! - Variations (6.2.5): [`Variation::ReusedSums`] adds the 8 r pixels of a ring to the sum of the radius before;
-//!   [`Variation::FetchesAtOnce`] rounds the fetches of a row up to a multiple of four.
+//! - Against the thesis: boxes are cut to the map in the shader, where listing 4.1 reads outside the texture,
+//!   which GLSL leaves undefined; and a binary search is allowed, though 3.5 rightly calls it a bad fit.
+//! - Variations (6.2.5): [`Variation::ReusedSums`] adds the 8 r pixels of a ring to the sum of the radius
+//!   before; [`Variation::FetchesAtOnce`] rounds the fetches of a row up to a multiple of four.
 
 use crate::gl::{Pass, ShaderSource, TextureFormat, glsl};
 use crate::maps::DensityMap;
@@ -30,8 +30,9 @@ impl BruteForce {
 }
 
 pub(super) fn counter(source: ShaderSource, density: TextureFormat, settings: &Settings) -> ShaderSource {
-    let source = source.define_if(settings.variation == Some(Variation::ReusedSums), "BOX_UNCLIPPED");
-    super::density_access(source, density, settings).file(match settings.variation {
+    let source =
+        source.define_if(settings.laboratory.variation == Some(Variation::ReusedSums), "BOX_UNCLIPPED");
+    super::density_access(source, density, settings).file(match settings.laboratory.variation {
         Some(Variation::ReusedSums) => glsl!("radius/tables/brute_force/count_reused_sums.glsl"),
         Some(Variation::FetchesAtOnce) => glsl!("radius/tables/brute_force/count_fetches_at_once.glsl"),
         _ => glsl!("radius/tables/brute_force/count.glsl"),

@@ -1,17 +1,18 @@
 //! Mipmaps of a density map (thesis 3.3): summed by passes of ours, or averaged by the driver.
 //!
-//! - Summed: a copy into level 0, then one pass a level, each texel the sum of four below; ⌊log2 side⌋ passes over
-//!   a third of the map's pixels in all, 4 fetches each. Memory: 4/3 of the map.
-//! - Averaged (4.3): a copy into level 0 in GL_R32F and glGenerateMipmap, whose filter OpenGL does not fix. A box of
-//!   2 x 2 averages exactly for sides that are powers of two and totals below 2^24 (the average of four whole numbers
-//!   needs two more bits a level, the sum of a block none); other sides are filtered as the driver likes, and
-//!   the radii are then approximate, on either side.
-//! - Naive (3.3.1): the summed chain over sides rounded up to powers of two, so that every pixel has a texel on
-//!   every level. The found radius r says that a block of side 2 r around the pixel holds enough; the exact radius is
-//!   therefore at most 2 r - 1 (edges zero), and may be any amount smaller than r.
+//! - Summed: a copy into level 0, then one pass a level, each texel the sum of four below; ⌊log2 side⌋ passes
+//!   over a third of the map's pixels in all, 4 fetches each. Memory: 4/3 of the map.
+//! - Averaged (4.3): a copy into level 0 in GL_R32F and glGenerateMipmap, whose filter OpenGL does not fix. A
+//!   box of 2 x 2 averages exactly for sides that are powers of two and totals below 2^24 (the average of
+//!   four whole numbers needs two more bits a level, the sum of a block none); other sides are filtered as
+//!   the driver likes, and the radii are then approximate, on either side.
+//! - Naive (3.3.1): the summed chain over sides rounded up to powers of two, so that every pixel has a texel
+//!   on every level. The found radius r says that a block of side 2 r around the pixel holds enough; the
+//!   exact radius is therefore at most 2 r - 1 (edges zero), and may be any amount smaller than r.
 //!
-//! A chain that is not rounded up loses the last column or row of an odd side on the next level. That is right for
-//! counting boxes: a texel is only read where its whole block is inside the box, hence inside the map.
+//! A chain that is not rounded up loses the last column or row of an odd side on the next level. That is
+//! right for counting boxes: a texel is only read where its whole block is inside the box, hence inside the
+//! map.
 //!
 //! Against the thesis: any size instead of powers of two.
 

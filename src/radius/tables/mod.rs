@@ -17,9 +17,9 @@
 //! | `forgotten_strip` | 4.3, first listing: `if(all(range))` | `if(range[..])` | a strip one pixel wide or high is not counted |
 //! | `float_ratio` | 4.4: outside over inside area, in f32 | S T >= n I | wrong for the rare n at which rounding decides: 1875 and 1925 of the first 2000, at MR 32 |
 //!
-//! The first five are of 4.2. Alone, `corner_test` only adds reads outside of the table, which do nothing. What each
-//! fault gives is predicted by [`reference::as_printed`](crate::reference::as_printed), the last one where the driver
-//! divides as IEEE 754 does, which GLSL does not promise.
+//! The first five are of 4.2. Alone, `corner_test` only adds reads outside of the table, which do nothing.
+//! What each fault gives is predicted by [`reference::as_printed`](crate::reference::as_printed), the last
+//! one where the driver divides as IEEE 754 does, which GLSL does not promise.
 
 mod brute_force;
 mod mipmap;
@@ -62,7 +62,8 @@ impl Tables {
         })
     }
 
-    /// What a structure for maps of `size` allocates, in the order in which [`resize`](Self::resize) takes it.
+    /// What a structure for maps of `size` allocates, in the order in which [`resize`](Self::resize) takes
+    /// it.
     pub(crate) fn shapes(size: UVec2, settings: &Settings) -> Vec<TargetShape> {
         match settings.method {
             Method::BruteForce => Vec::new(),

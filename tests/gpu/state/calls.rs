@@ -3,15 +3,14 @@
 use glam::UVec2;
 use varikernel::gl::TextureFormat;
 use varikernel::reference::{self, Radii};
-use varikernel::settings::{Edges, Method, Order, SatBuild, Search, Settings, Storage};
+use varikernel::settings::{Edges, Laboratory, Method, Order, SatBuild, Search, Settings, Storage};
 use varikernel::{
-    AdaptivePipeline, Changed, CountBounds, DensityMap, Error, Frame, Image, Mask, MaskMaker, RadiusMap,
-    RadiusPipeline,
+    Changed, CountBounds, DensityMap, Error, Frame, Image, Mask, MaskMaker, RadiusMap, RadiusPipeline,
 };
 
 use super::host::fail_at_each;
 use super::{SIZE, Watch};
-use crate::support::{random_map, search};
+use crate::support::{planned, random_map, search};
 
 fn question() -> Search {
     search(25, 8, Edges::Scale)
@@ -109,16 +108,18 @@ fn frames(watch: &Watch<'_>) {
         watch.unchanged("RadiusPipeline::update");
         assert_eq!(radii.read().unwrap(), expected.radius, "{changed:?} under the host's state");
     }
+    assert_eq!(masked.render(&map).unwrap().read().unwrap(), expected.radius, "a frame without its mask");
+    watch.unchanged("RadiusPipeline::update without a mask");
     masked.update(&Frame { density: &map, mask: Some(&mask), changed: Changed::Added }).unwrap();
     watch.unchanged("RadiusPipeline::update with added photons");
     masked.set_order(Order::Forward).unwrap();
     watch.unchanged("RadiusPipeline::set_order");
 
-    let mut adaptive = AdaptivePipeline::new(&watch.gl, SIZE, map.format(), bracketed()).unwrap();
-    watch.unchanged("AdaptivePipeline::new");
+    let mut adaptive = RadiusPipeline::new(&watch.gl, SIZE, map.format(), planned(bracketed())).unwrap();
+    watch.unchanged("RadiusPipeline::new, planned");
     for _ in 0..3 {
         let radii = adaptive.update(&Frame::new(&map)).unwrap();
-        watch.unchanged("AdaptivePipeline::update");
+        watch.unchanged("RadiusPipeline::update, planned");
         assert_eq!(radii.read().unwrap(), expected.radius, "adaptive under the host's state");
     }
 }
@@ -143,7 +144,7 @@ fn failing(watch: &Watch<'_>) {
     let mut map = map(watch);
     let too_large = UVec2::splat(gl.info().max_texture_size + 1);
     assert!(RadiusPipeline::new(gl, too_large, map.format(), Settings::default()).is_err());
-    assert!(AdaptivePipeline::new(gl, too_large, map.format(), Settings::default()).is_err());
+    assert!(RadiusPipeline::new(gl, too_large, map.format(), planned(Settings::default())).is_err());
     assert!(MaskMaker::new(gl, too_large).is_err());
     watch.unchanged("making what is too large");
     let mut other = RadiusPipeline::new(gl, UVec2::ONE, map.format(), Settings::default()).unwrap();
@@ -160,7 +161,12 @@ fn failing(watch: &Watch<'_>) {
     assert!(pipeline.update(&Frame { mask: Some(&mask), ..Frame::new(&map) }).is_err());
     watch.unchanged("RadiusPipeline::update with a mask that is not expected");
     let (storage, sat_build) = (Storage::F32, SatBuild::Doubling);
-    let settings = Settings { search: question(), storage, sat_build, ..Settings::default() };
+    let settings = Settings {
+        search: question(),
+        storage,
+        laboratory: Laboratory { sat_build, ..Laboratory::default() },
+        ..Settings::default()
+    };
     let mut rounding = RadiusPipeline::new(gl, SIZE, map.format(), settings).unwrap();
     let unknown = DensityMap::borrow(gl, watch.textures[0], CountBounds::UNKNOWN).unwrap();
     assert!(matches!(rounding.render(&unknown), Err(Error::Inexact { .. })));
@@ -188,7 +194,10 @@ fn failing_half_way(watch: &Watch<'_>) {
     let settings = Settings { limited_mask: true, ..bracketed() };
     let failures = [
         fail_at_each(|| RadiusPipeline::new(gl, SIZE, format, settings), after("RadiusPipeline::new")),
-        fail_at_each(|| AdaptivePipeline::new(gl, SIZE, format, settings), after("AdaptivePipeline::new")),
+        fail_at_each(
+            || RadiusPipeline::new(gl, SIZE, format, planned(settings)),
+            after("RadiusPipeline::new, planned"),
+        ),
         fail_at_each(|| MaskMaker::new(gl, SIZE), after("MaskMaker::new")),
         fail_at_each(|| RadiusMap::borrow(gl, watch.textures[0], None), after("RadiusMap::borrow")),
     ];

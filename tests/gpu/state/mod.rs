@@ -16,7 +16,7 @@ use glam::UVec2;
 use glow::HasContext as _;
 use varikernel::{Gl, StatePolicy, context};
 
-use crate::frames;
+use crate::masks;
 use crate::osmesa::osmesa_is_here;
 use crate::support::{random_map, working_candidates};
 use host::Host;
@@ -87,7 +87,7 @@ const SIZE: UVec2 = UVec2::new(12, 19);
 
 fn borrowed_textures(host: &Host) -> [glow::Texture; 2] {
     let density = random_map(SIZE.x, SIZE.y, 4);
-    let textures = [density_texture(host, SIZE, density.values()), frames::depth_and_stencil(&host.gl, SIZE)];
+    let textures = [density_texture(host, SIZE, density.values()), masks::depth_and_stencil(&host.gl, SIZE)];
     // SAFETY: the context is current.
     unsafe { host.gl.glow().bind_texture(glow::TEXTURE_2D, None) };
     textures

@@ -1,11 +1,11 @@
 //! A host's query that runs while the library is called.
 
 use glow::HasContext as _;
-use varikernel::{Error, Frame, StatePolicy};
+use varikernel::{Error, Frame, MaskMaker, RadiusPipeline, StatePolicy, context};
 
 use super::host::Host;
 use super::{Watch, borrowed_textures, calls, choices};
-use varikernel::{AdaptivePipeline, MaskMaker, context};
+use crate::support::planned;
 
 /// Begins a query of the host, calls, ends it, and gives its result.
 fn across(host: &Host, kind: u32, call: impl FnOnce()) -> u64 {
@@ -37,9 +37,9 @@ fn check(choice: &context::DeviceChoice, policy: StatePolicy) {
     let expected = calls::expected();
     let mut pipeline = calls::pipeline(&watch);
     let mut adaptive =
-        AdaptivePipeline::new(&watch.gl, map.size(), map.format(), *pipeline.settings()).unwrap();
+        RadiusPipeline::new(&watch.gl, map.size(), map.format(), planned(*pipeline.settings())).unwrap();
     let mut maker = MaskMaker::new(&watch.gl, map.size()).unwrap();
-    let frames = |pipeline: &mut varikernel::RadiusPipeline| {
+    let frames = |pipeline: &mut RadiusPipeline| {
         pipeline.render(&map).unwrap();
     };
     // Each pass draws a triangle, and no triangle is captured.

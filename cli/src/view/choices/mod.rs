@@ -10,7 +10,8 @@ use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
 use varikernel::image::write_atomically;
 use varikernel::settings::{
-    Edges, Estimate, Exactness, IrradianceSettings, Kernel, Method, Order, RadiusChoice, Search, Settings,
+    Edges, Estimate, Exactness, IrradianceSettings, Kernel, Laboratory, Method, Order, RadiusChoice, Search,
+    Settings,
 };
 use varikernel::view::Camera;
 
@@ -98,7 +99,9 @@ impl Choices {
         let exactness = if self.method.is_exact() { Exactness::Required } else { Exactness::Waived };
         let (min_photons, max_radius) = (self.min_photons, self.max_radius);
         let search = Search { min_photons, max_radius, edges: self.edges, order: self.order };
-        Settings { search, exactness, limited_mask: true, ..Settings::of(self.method) }
+        let usual = Settings::of(self.method);
+        let laboratory = Laboratory { exactness, ..usual.laboratory };
+        Settings { search, limited_mask: true, laboratory, ..usual }
     }
 
     /// How photons become irradiance.
@@ -112,7 +115,7 @@ impl Choices {
     pub(super) fn set_method(&mut self, method: Method) {
         self.method = method;
         if self.order == Order::Bracketed && method != Method::SummedAreaTable {
-            self.order = Order::Binary;
+            self.order = Settings::of(method).search.order;
         }
     }
 

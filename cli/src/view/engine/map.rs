@@ -2,18 +2,19 @@
 
 use std::path::Path;
 
-use anyhow::{Result, anyhow};
+use anyhow::Result;
 use varikernel::context::window;
 use varikernel::glam::UVec2;
 use varikernel::image::{Attribute, Format, Picture, ReadOptions, read_counts, write_counts, write_picture};
 use varikernel::reference::{Inside, Table};
 use varikernel::settings::Settings;
-use varikernel::{CountBounds, DensityMap, Error, Gl, Image, RadiusPipeline};
+use varikernel::{CountBounds, DensityMap, Gl, Image, RadiusPipeline};
 use varikernel_lab::total_photons;
 
 use super::Readout;
 use crate::view::choices::Choices;
 use crate::view::views::{Maps, round_up};
+use crate::words::in_words_of_options;
 
 pub(in crate::view) struct MapEngine {
     gl: Gl,
@@ -43,7 +44,8 @@ impl MapEngine {
             gl: gl.clone(),
             title: path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
             shown: window::Picture::values(gl, &counts.map(|count| count as f32))?,
-            pipeline: RadiusPipeline::new(gl, counts.size(), density.format(), settings).map_err(explain)?,
+            pipeline: RadiusPipeline::new(gl, counts.size(), density.format(), settings)
+                .map_err(in_words_of_options)?,
             photons: total_photons(&counts),
             most_photons: counts.values().iter().copied().max().unwrap_or(0),
             density,
@@ -65,16 +67,16 @@ impl MapEngine {
         }
         let bounds = CountBounds::of(&self.counts, settings.search);
         let density = DensityMap::upload(&self.gl, &self.counts, bounds)?;
-        let mut pipeline =
-            RadiusPipeline::new(&self.gl, self.counts.size(), density.format(), settings).map_err(explain)?;
-        pipeline.render(&density).map_err(explain)?;
+        let mut pipeline = RadiusPipeline::new(&self.gl, self.counts.size(), density.format(), settings)
+            .map_err(in_words_of_options)?;
+        pipeline.render(&density).map_err(in_words_of_options)?;
         (self.density, self.pipeline) = (density, pipeline);
         (self.searched, self.radii) = (false, None);
         Ok(())
     }
 
     pub(super) fn step(&mut self) -> Result<()> {
-        self.pipeline.render(&self.density).map_err(explain)?;
+        self.pipeline.render(&self.density).map_err(in_words_of_options)?;
         (self.searched, self.radii) = (true, None);
         Ok(())
     }
@@ -140,15 +142,5 @@ impl MapEngine {
                 Ok(write_counts(path, "radius", &radii, &[settings])?)
             }
         }
-    }
-}
-
-/// An error of the library, worded for the window.
-fn explain(error: Error) -> anyhow::Error {
-    match error {
-        Error::Setting { name, value, reason } => {
-            anyhow!("{} = {value} is not possible: {reason}", name.replace('_', " "))
-        }
-        other => other.into(),
     }
 }

@@ -13,9 +13,9 @@ use varikernel::{Gl, Image};
 
 use super::Readout;
 use crate::photons::load;
-use crate::render::in_words_of_options;
 use crate::view::choices::Choices;
 use crate::view::views::{Maps, round_up};
+use crate::words::in_words_of_options;
 
 pub(in crate::view) struct SceneEngine {
     live: Live,

@@ -3,7 +3,7 @@
 // MR, or MR + 1 where "not even MR" is to be distinguished from MR; in pixels.
 uniform int last_radius;
 #ifdef MASKED
-// Not 0 where a tile has pixels that need a radius.
+// Not 0 where a tile has pixels that need a radius; one texel that is not 0 where all have.
 uniform usampler2D tile_mask;
 #endif
 #ifdef CHANGED
@@ -49,7 +49,8 @@ void main()
         tile_class = uint(CLASS_UNREACHED);
     }
 #ifdef MASKED
-    if (texelFetch(tile_mask, ivec2(gl_FragCoord.xy), 0).r == 0u) {
+    ivec2 tile = min(ivec2(gl_FragCoord.xy), textureSize(tile_mask, 0) - 1);
+    if (texelFetch(tile_mask, tile, 0).r == 0u) {
         tile_class = uint(CLASS_UNREACHED);
     }
 #endif

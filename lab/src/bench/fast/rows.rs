@@ -5,7 +5,7 @@ use crate::bench::settings::MapInfo;
 use crate::bench::situation::Situation;
 use crate::bench::work::Work;
 use varikernel::measure::Unit;
-use varikernel::settings::{Edges, Order, SatBuild, SatSamples, Search, Settings};
+use varikernel::settings::{Edges, Laboratory, Order, SatBuild, SatSamples, Search, Settings};
 
 /// All orders of a search in a table.
 pub(super) const ORDERS: [Order; 3] = [Order::Forward, Order::Binary, Order::Bracketed];
@@ -68,10 +68,17 @@ impl Rows<'_> {
     /// A table by a scan.
     fn question(self, order: Order, max_radius: u32, edges: Edges) -> Settings {
         let search = Search { max_radius, edges, order, ..self.base.search };
-        Settings { search, sat_build: SatBuild::Scan, ..self.base }
+        Settings {
+            search,
+            laboratory: Laboratory { sat_build: SatBuild::Scan, ..self.base.laboratory },
+            ..self.base
+        }
     }
 }
 
 fn doubling(settings: Settings, sat_samples: SatSamples) -> Settings {
-    Settings { sat_build: SatBuild::Doubling, sat_samples, ..settings }
+    Settings {
+        laboratory: Laboratory { sat_build: SatBuild::Doubling, sat_samples, ..settings.laboratory },
+        ..settings
+    }
 }

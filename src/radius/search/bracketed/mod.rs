@@ -1,14 +1,16 @@
 //! The bracketed search: bounds for the radii of tiles, of blocks inside them, then the pixels.
 //!
-//! For a block of side b, let the *outer* box of radius r be the union of its pixels' boxes, and the *inner* box what
-//! they have in common. Let L be the smallest radius whose outer box holds enough: no pixel's radius is smaller. The
-//! inner box of radius L + b - 1 is the outer box of L, so no pixel's radius is larger than that. One search for L
-//! thus leaves b candidates for every pixel of the block; for a block inside a larger one, of side B, it starts with
-//! B - b + 1. Where an edge is in reach and the count is scaled, the inside area differs from pixel to pixel: L is
-//! tested with the least, and the upper bound is searched with the most. Both tests are monotone in r, as is the
-//! pixel's own between them, so that the result is the definition's.
+//! For a block of side b, let the *outer* box of radius r be the union of its pixels' boxes, and the *inner*
+//! box what they have in common. Let L be the smallest radius whose outer box holds enough: no pixel's radius
+//! is smaller. The inner box of radius L + b - 1 is the outer box of L, so no pixel's radius is larger than
+//! that. One search for L thus leaves b candidates for every pixel of the block; for a block inside a larger
+//! one, of side B, it starts with B - b + 1. Where an edge is in reach and the count is scaled, the inside
+//! area differs from pixel to pixel: L is tested with the least, and the upper bound is searched with the
+//! most. Both tests are monotone in r, as is the pixel's own between them, so that the result is the
+//! definition's.
 //!
-//! A tile of 64 x 64 pixels also says which programs its pixels take, and the vertex stage draws nothing for the others:
+//! A tile of 64 x 64 pixels also says which programs its pixels take, and the vertex stage draws nothing for
+//! the others:
 //!
 //! | class | what is known | its pixels |
 //! |---|---|---|
@@ -18,16 +20,17 @@
 //! | edge | scaled counts | brackets of 8, of 2, with loops |
 //! | kept | no changed pixel within the radii of the frame before | stay as they are |
 //!
-//! - Cost, inner: 4 fetches for each of 6 boxes in 64 pixels, 3 in 4, and 1 a pixel, whatever the density and MR. Dense:
-//!   1 to 2 boxes a pixel. Unreached: nothing. Edge: as inner and about half as much again.
+//! - Cost, inner: 4 fetches for each of 6 boxes in 64 pixels, 3 in 4, and 1 a pixel, whatever the density and
+//!   MR. Dense: 1 to 2 boxes a pixel. Unreached: nothing. Edge: as inner and about half as much again.
 //! - Memory: 4 bytes a block, 5 a tile: 0.27 of the map together.
 //! - Exact while a box of radius MR + 32 does not wrap, since outer boxes are larger than those of pixels.
 //!
 //! Tried, and not taken (llvmpipe, 1024², in probe passes):
 //!
-//! - the four nearest of a coarse grid, |R(p) - R(q)| <= distance: 2.2 to 3.8 in a first trial; they take as many fetches as
-//!   a box and leave up to 5 candidates;
-//! - the same blocks without classes, with loops everywhere: 3.4 to 4.1, since a loop costs 0.7 there, entered or not;
+//! - the four nearest of a coarse grid, |R(p) - R(q)| <= distance: 2.2 to 3.8 in a first trial; they take as
+//!   many fetches as a box and leave up to 5 candidates;
+//! - the same blocks without classes, with loops everywhere: 3.4 to 4.1, since a loop costs 0.7 there,
+//!   entered or not;
 //! - blocks of 4 in place of 2, two boxes a pixel: 2.1 to 2.4 for the pixels alone, against 1.3 to 1.6;
 //! - tiles of 32: fewer pixels near edges, but quads of 4 x 4 and 16 x 16 fragments on the way: 0.3 more;
 //! - skipping the box of a pixel whose bracket is decided: llvmpipe computes both sides of every branch.
@@ -47,13 +50,11 @@ use crate::maps::RadiusMap;
 use crate::maps::exactness;
 use crate::maps::{Changed, Frame, Rectangle};
 use crate::radius::tables::{self, Tables};
-use crate::settings::{Edges, Order, Search, Settings};
+use crate::settings::{BRACKET_TILE_SIDE as TILE_SIDE, Edges, Order, Search, Settings};
 
 const TILE: &str = "radius tiles";
 const BLOCKS: &str = "radius blocks";
 
-/// Pixels of a tile's side.
-const TILE_SIDE: u32 = 64;
 /// Pixels of the sides of the blocks inside, each with the side of what it lies in.
 const BLOCK_SIDES: [(u32, u32); 2] = [(TILE_SIDE, 8), (8, FINEST_SIDE)];
 /// Pixels of the side of the smallest blocks: 2, so that two radii are left for a pixel.
@@ -158,7 +159,7 @@ impl Bracketed {
         }
 
         // A clear takes no heed of what is kept.
-        let clears = before == Before::Nothing && !self.settings.masked;
+        let clears = before == Before::Nothing && !frame.leaves_out_pixels();
         if clears {
             unreached::clear(&self.settings, radii);
         }

@@ -1,12 +1,13 @@
-//! A table built by recursive doubling between two textures (thesis 3.4.1, 4.2, after Hensley et al. 2005): pass k adds,
-//! to each entry, the entries s^k, 2 s^k, ... (s - 1) s^k texels before it, first along x, then along y.
+//! A table built by recursive doubling between two textures (thesis 3.4.1, 4.2, after Hensley et al. 2005):
+//! pass k adds, to each entry, the entries s^k, 2 s^k, ... (s - 1) s^k texels before it, first along x, then
+//! along y.
 //!
-//! - Passes: one copy, then ⌈log_s width⌉ + ⌈log_s height⌉ of s fetches (1024²: 20 passes for s = 2, 10 for 4, 8 for
-//!   8, 6 for 16).
+//! - Passes: one copy, then ⌈log_s width⌉ + ⌈log_s height⌉ of s fetches (1024²: 20 passes for s = 2, 10 for
+//!   4, 8 for 8, 6 for 16).
 //! - Memory: a second table.
 //! - Against the thesis: sizes need not be square or powers of s.
-//! - Variation (6.4.5): [`Variation::UnfinishedTexels`] leaves s^(k-1) columns or rows out of pass k: all passes along a
-//!   side of w together, less than w / (s - 1).
+//! - Variation (6.4.5): [`Variation::UnfinishedTexels`] leaves s^(k-1) columns or rows out of pass k: all
+//!   passes along a side of w together, less than w / (s - 1).
 
 use glam::{IVec2, UVec2};
 
@@ -64,10 +65,13 @@ impl Doubling {
         }
         .fill(table)?;
 
-        let (horizontal, vertical) =
-            if self.settings.faults.swapped_axes { (IVec2::Y, IVec2::X) } else { (IVec2::X, IVec2::Y) };
+        let (horizontal, vertical) = if self.settings.laboratory.faults.swapped_axes {
+            (IVec2::Y, IVec2::X)
+        } else {
+            (IVec2::X, IVec2::Y)
+        };
         for (axis, side) in [(horizontal, size.x), (vertical, size.y)] {
-            for (index, stride) in strides(self.settings.sat_samples, side) {
+            for (index, stride) in strides(self.settings.laboratory.sat_samples, side) {
                 let mut pass = Pass::new(DOUBLING, &self.step)
                     .read("table", table.texture())
                     .set("axis", axis)
@@ -84,13 +88,14 @@ impl Doubling {
 
     /// Where a pass starts to draw: at the first texel that is not finished in both textures.
     ///
-    /// Along the axis, the entries before s^k are finished when pass k begins, in the texture that it reads. The one
-    /// that it draws into is older by a pass: there, those before s^(k-1) are. So the pass copies the entries in
-    /// between (all their other samples lie before the table), and both textures are right up to s^k. The first pass
-    /// finds nothing of use in the texture that it draws into, the other axis's unfinished entries or an old frame.
+    /// Along the axis, the entries before s^k are finished when pass k begins, in the texture that it reads.
+    /// The one that it draws into is older by a pass: there, those before s^(k-1) are. So the pass copies the
+    /// entries in between (all their other samples lie before the table), and both textures are right up to
+    /// s^k. The first pass finds nothing of use in the texture that it draws into, the other axis's
+    /// unfinished entries or an old frame.
     fn origin(&self, axis: IVec2, index: u32, stride: i32) -> UVec2 {
-        if self.settings.variation == Some(Variation::UnfinishedTexels) && index > 0 {
-            axis.as_uvec2() * (stride.cast_unsigned() / self.settings.sat_samples.count())
+        if self.settings.laboratory.variation == Some(Variation::UnfinishedTexels) && index > 0 {
+            axis.as_uvec2() * (stride.cast_unsigned() / self.settings.laboratory.sat_samples.count())
         } else {
             UVec2::ZERO
         }
@@ -118,7 +123,7 @@ pub(super) fn sources(density: TextureFormat, settings: &Settings) -> Vec<Shader
 fn doubling_source(settings: &Settings) -> ShaderSource {
     let source = ShaderSource::new(DOUBLING)
         .targets([tables::format(settings)])
-        .define("SAMPLES", settings.sat_samples.count())
+        .define("SAMPLES", settings.laboratory.sat_samples.count())
         .define_if(settings.reaching_faults().sample_stride, "FAULT_SAMPLE_STRIDE");
     tables::number(source, settings).file(glsl!("radius/tables/summed_area_table/doubling.frag"))
 }

@@ -1,16 +1,18 @@
-//! Summed-area table (thesis 3.4, 4.2): entry (x, y) is the sum of all counts up to and including column x, row y.
+//! Summed-area table (thesis 3.4, 4.2): entry (x, y) is the sum of all counts up to and including column x,
+//! row y.
 //!
 //! Two builds: [`doubling`], the thesis's, and [`scan`], ours.
 //!
-//! - A box: 4 fetches, fewer at the map's lower left; ⌈log2 MR⌉ boxes for a binary search, R for a forward one, about
-//!   two for a bracketed one.
+//! - A box: 4 fetches, fewer at the map's lower left; ⌈log2 MR⌉ boxes for a binary search, R for a forward
+//!   one, about two for a bracketed one.
 //! - Memory: the table (4 bytes an entry, 2 in u16) beside the density map, and what its build needs.
-//! - Exact: u32 and u16 while each box holds less than 2^32 or 2^16, even where the table wraps; f32 while the total
-//!   is at most 2^24, f16 while it is at most 2^11; less the mean, f32 is not proved for any map.
-//! - u16 against u32, on llvmpipe at 512² to 2048²: a scan 2 to 18 % faster, but a bracketed search 4 to 11 % slower and a
-//!   binary one 24 to 28 %, since its texels are widened when read. It saves memory there, not time.
-//! - Against the thesis: u32 is the default, which its drivers did not support; reads outside the table, which GLSL
-//!   leaves undefined, are tested for.
+//! - Exact: u32 and u16 while each box holds less than 2^32 or 2^16, even where the table wraps; f32 while
+//!   the total is at most 2^24, f16 while it is at most 2^11; less the mean, f32 is not proved for any map.
+//! - u16 against u32, on llvmpipe at 512² to 2048²: a scan 2 to 18 % faster, but a bracketed search 4 to 11 %
+//!   slower and a binary one 24 to 28 %, since its texels are widened when read. It saves memory there, not
+//!   time.
+//! - Against the thesis: u32 is the default, which its drivers did not support; reads outside the table,
+//!   which GLSL leaves undefined, are tested for.
 //! - Variation (6.4.5): [`Variation::UnconditionalFetches`] takes 4 fetches everywhere.
 //!
 //! The listings' faults are described in the module above, since all methods have some.
@@ -61,7 +63,7 @@ impl SummedAreaTable {
     pub(super) fn new(gl: &Gl, size: UVec2, density: TextureFormat, settings: &Settings) -> Result<Self> {
         Ok(Self {
             table: Target::of(gl, &table_shape(size, settings))?,
-            build: match settings.sat_build {
+            build: match settings.laboratory.sat_build {
                 SatBuild::Doubling => {
                     Build::Doubling(Box::new(doubling::Doubling::new(gl, size, density, settings)?))
                 }
@@ -75,7 +77,7 @@ impl SummedAreaTable {
 
     pub(super) fn shapes(size: UVec2, settings: &Settings) -> Vec<TargetShape> {
         let mut shapes = vec![table_shape(size, settings)];
-        shapes.extend(match settings.sat_build {
+        shapes.extend(match settings.laboratory.sat_build {
             SatBuild::Doubling => doubling::shapes(size, settings),
             SatBuild::Scan => scan::shapes(size),
         });
@@ -140,7 +142,7 @@ impl SummedAreaTable {
             Some(mean) => pass.set("mean", mean),
             None => pass,
         };
-        if self.settings.faults.in_table_sampling() {
+        if self.settings.laboratory.faults.in_table_sampling() {
             pass.set("table_size", self.table.size().as_ivec2())
         } else {
             pass
@@ -186,7 +188,7 @@ fn mean(density: &DensityMap, settings: &Settings) -> Option<f32> {
 }
 
 pub(super) fn build_sources(density: TextureFormat, settings: &Settings) -> Vec<ShaderSource> {
-    let mut sources = match settings.sat_build {
+    let mut sources = match settings.laboratory.sat_build {
         SatBuild::Doubling => doubling::sources(density, settings),
         SatBuild::Scan => scan::sources(density, settings),
     };
@@ -200,7 +202,7 @@ fn addition_source(settings: &Settings) -> ShaderSource {
 }
 
 pub(super) fn counter(source: ShaderSource, settings: &Settings) -> ShaderSource {
-    let faults = settings.faults;
+    let faults = settings.laboratory.faults;
     let source = source
         .define_if(faults.in_table_sampling(), "BOX_UNCLIPPED")
         .define_if(faults.clamp_to_63, "FAULT_CLAMP_TO_63")
@@ -208,7 +210,7 @@ pub(super) fn counter(source: ShaderSource, settings: &Settings) -> ShaderSource
         .define_if(faults.corner_test, "FAULT_CORNER_TEST");
     super::number(source, settings).file(if faults.in_table_sampling() {
         glsl!("radius/tables/summed_area_table/count_as_printed.glsl")
-    } else if settings.variation == Some(Variation::UnconditionalFetches) {
+    } else if settings.laboratory.variation == Some(Variation::UnconditionalFetches) {
         glsl!("radius/tables/summed_area_table/count_unconditional_fetches.glsl")
     } else {
         glsl!("radius/tables/summed_area_table/count.glsl")

@@ -1,10 +1,12 @@
-//! A table built by a work-efficient scan: each count is read twice and each entry written twice, whatever the size.
+//! A table built by a work-efficient scan: each count is read twice and each entry written twice, whatever
+//! the size.
 //!
-//! A fragment works on a tile of 4 x 8 texels and writes through several draw buffers, since one that writes a single
-//! entry has little to share with its neighbours:
+//! A fragment works on a tile of 4 x 8 texels and writes through several draw buffers, since one that writes
+//! a single entry has little to share with its neighbours:
 //!
 //! 1. the sums of each tile's 8 rows and 4 columns;
-//! 2. and 3. a scan of these along rows (what lies left of each tile), then along columns (what lies left of and below
+//! 2. and 3. a scan of these along rows (what lies left of each tile), then along columns (what lies left of
+//! and below
 //!    it): sums of groups of elements, then runs of 8 with all groups and elements before them;
 //! 4. the entries of each tile, 8 layers of GL_RGBA32UI;
 //! 5. the entries in one plain texture, which every search reads.
@@ -15,17 +17,17 @@
 //!
 //! Tried, and not taken (llvmpipe, 1024², in copies, CPU time):
 //!
-//! - searching the packed form directly: 0.8 to 1.2 for unpacking are saved, but a probe takes a third longer (3.3 against
-//!   2.5), and every search but one of a dense map takes two or more;
-//! - 8 layers of GL_R32UI, a column of 8 texels a fragment: 0.87 to write what 0.82 does here, a probe takes an eighth longer
-//!   (2.8), and the rows' sums are no longer shared by the 4 columns of a tile;
-//! - rows first in runs of 32, then columns in runs of 8: 0.65 and 0.64, as much as steps 1 and 4, but what lies below a run
-//!   is then known only after the second, so that unpacking takes another fetch;
+//! - searching the packed form directly: 0.8 to 1.2 for unpacking are saved, but a probe takes a third longer
+//!   (3.3 against 2.5), and every search but one of a dense map takes two or more;
+//! - 8 layers of GL_R32UI, a column of 8 texels a fragment: 0.87 to write what 0.82 does here, a probe takes
+//!   an eighth longer (2.8), and the rows' sums are no longer shared by the 4 columns of a tile;
+//! - rows first in runs of 32, then columns in runs of 8: 0.65 and 0.64, as much as steps 1 and 4, but what
+//!   lies below a run is then known only after the second, so that unpacking takes another fetch;
 //! - choosing a component by index in place of conditions: 1.3 to 1.9 for unpacking, against 0.8 to 1.2;
 //! - a pass of its own that adds up the groups: two passes more, and no less time from 64² to 2048².
 //!
-//! After Harris, Sengupta and Owens, "Parallel Prefix Sum (Scan) with CUDA" (GPU Gems 3, chapter 39), with draw buffers
-//! in the place of shared memory.
+//! After Harris, Sengupta and Owens, "Parallel Prefix Sum (Scan) with CUDA" (GPU Gems 3, chapter 39), with
+//! draw buffers in the place of shared memory.
 
 use std::ops::Range;
 
@@ -83,8 +85,8 @@ impl Scan {
 
     /// Fills `table` from a density map, of which `changed` differs from the one before.
     ///
-    /// Of the sums between, those of the changed tiles and of the lines through them are made anew; of the entries, those
-    /// from the first changed one on to the right and above.
+    /// Of the sums between, those of the changed tiles and of the lines through them are made anew; of the
+    /// entries, those from the first changed one on to the right and above.
     pub(super) fn build(
         &mut self,
         density: &DensityMap,
