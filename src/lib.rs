@@ -157,7 +157,7 @@ pub use gl::{Gl, StatePolicy};
 pub use image::Image;
 pub use light::{DensityStage, GatherStage, IrradiancePipeline, SplatStage};
 pub use maps::{
-    Changed, ChosenRadius, CountBounds, DensityMap, Frame, HostDepth, HostSurfaces, IrradianceMap, Mask,
+    Changed, CountBounds, DensityMap, Frame, HostDepth, HostSurfaces, IrradianceMap, KernelRadii, Mask,
     MaskMaker, PhotonPoints, PositionMaker, PowerMap, RadiusMap, SurfaceMaps,
 };
 pub use photon::PhotonPoint;

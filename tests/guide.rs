@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use varikernel::glam::UVec2;
-use varikernel::settings::{IrradianceSettings, Method, RadiusChoice, Settings};
+use varikernel::settings::{IrradianceSettings, KernelRadius, Method, Settings};
 use varikernel::{IrradiancePipeline, RadiusPipeline};
 
 const GUIDE: &str = include_str!("../docs/guide.md");
@@ -32,8 +32,8 @@ fn the_memory_of_1080p_and_4k_is_what_the_library_asks_for() {
         row("radii, the thesis's table, `Settings::thesis()`", radii(Settings::thesis())),
         row("radii, pyramid", radii(Settings::of(Method::Pyramid))),
         row("radii, brute force", radii(Settings::of(Method::BruteForce))),
-        row("light, variable radii", light(RadiusChoice::Variable)),
-        row("light, a fixed radius", light(RadiusChoice::Fixed(2))),
+        row("light, variable radii", light(KernelRadius::Variable)),
+        row("light, a fixed radius", light(KernelRadius::Fixed(2))),
         row("positions of a depth buffer", |size| 16 * u64::from(size.element_product())),
     ]
     .join("\n");

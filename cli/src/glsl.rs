@@ -9,7 +9,7 @@ use clap::ValueEnum;
 use serde::Serialize;
 use varikernel::gl::{Interface, ShaderSource, ShaderStage, TextureFormat};
 use varikernel::image::write_atomically;
-use varikernel::settings::{Kernel, Method, Planning, RadiusChoice, Settings};
+use varikernel::settings::{Kernel, KernelRadius, Method, Planning, Settings};
 use varikernel::{MaskMaker, PositionMaker, light, radius, render};
 
 use super::method_options::MethodOptions;
@@ -71,7 +71,7 @@ pub(crate) struct Args {
     /// Width of the kernels: `variable`, or `fixed:PIXELS` for the same everywhere.
     #[arg(long, default_value = "variable", value_parser = parse_radius, value_name = "RADIUS")]
     #[arg(help_heading = "Kernels")]
-    radius: RadiusChoice,
+    radius: KernelRadius,
 
     /// Print one JSON object instead of text.
     #[arg(long)]

@@ -8,7 +8,7 @@ use varikernel::render::{Layers, Reference};
 use varikernel::scene::Scene;
 use varikernel::settings::PictureSettings;
 
-use crate::PictureError;
+use crate::picture::PictureError;
 
 /// Two references of one scene, of every other seed each.
 #[derive(Debug)]

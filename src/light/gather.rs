@@ -8,11 +8,11 @@
 
 use glam::UVec2;
 
-use super::kernel::{self, check, read_radius};
+use super::kernel_pass::{self, check, read_radius};
 use crate::error::Result;
 use crate::gl::{Gl, Pass, Program, ShaderSource, StateGuard, Target, Targets, TextureFormat, glsl};
-use crate::maps::{ChosenRadius, IrradianceMap, PowerMap, SurfaceMaps};
-use crate::settings::{Estimate, IrradianceSettings, RadiusChoice};
+use crate::maps::{IrradianceMap, KernelRadii, PowerMap, SurfaceMaps};
+use crate::settings::{Estimate, IrradianceSettings, KernelRadius};
 
 const LABEL: &str = "gather";
 
@@ -21,7 +21,7 @@ const LABEL: &str = "gather";
 pub struct GatherStage {
     gl: Gl,
     program: Program,
-    radius: RadiusChoice,
+    radius: KernelRadius,
     irradiance: IrradianceMap,
 }
 
@@ -59,7 +59,7 @@ impl GatherStage {
         &mut self,
         surfaces: &SurfaceMaps,
         power: &PowerMap,
-        radius: ChosenRadius<'_>,
+        radius: KernelRadii<'_>,
     ) -> Result<&IrradianceMap> {
         check(surfaces, self.irradiance.size(), radius, self.radius)?;
         surfaces.check_size(power.size())?;
@@ -74,12 +74,12 @@ impl GatherStage {
 /// The shader of these settings.
 pub(super) fn source(settings: &IrradianceSettings) -> ShaderSource {
     let corrects = settings.estimate == Estimate::Gather { count_correction: true };
-    kernel::source(LABEL, settings)
+    kernel_pass::source(LABEL, settings)
         .variant_if(corrects, "count-correction")
         .targets([TextureFormat::Rgba32Float])
         .define_if(corrects, "COUNT_CORRECTION")
         .file(glsl!("common/surfaces.glsl"))
         .file(glsl!("common/kernel.glsl"))
-        .file(glsl!("common/chosen_radius.glsl"))
+        .file(glsl!("common/kernel_radius.glsl"))
         .file(glsl!("light/gather.frag"))
 }

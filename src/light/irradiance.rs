@@ -15,10 +15,10 @@ use super::{gather, splat};
 use crate::error::Result;
 use crate::gl::{Gl, ShaderSource, StateGuard, Targets, TextureFormat, bytes_of};
 use crate::maps::{
-    ChosenRadius, DensityMap, Frame, IrradianceMap, PhotonPoints, PowerMap, RadiusMap, SurfaceMaps,
+    DensityMap, Frame, IrradianceMap, KernelRadii, PhotonPoints, PowerMap, RadiusMap, SurfaceMaps,
 };
 use crate::radius::{RadiusPipeline, check_fits};
-use crate::settings::{Estimate, IrradianceSettings, Kernel, RadiusChoice, Settings};
+use crate::settings::{Estimate, IrradianceSettings, Kernel, KernelRadius, Settings};
 
 /// Photons and surfaces in, irradiance out, for one size.
 ///
@@ -53,8 +53,8 @@ impl IrradiancePipeline {
             settings,
             density: DensityStage::new(gl, size)?,
             radii: match settings.radius {
-                RadiusChoice::Fixed(_) => None,
-                RadiusChoice::Variable => Some(radius_pipeline(gl, size, settings.radii)?),
+                KernelRadius::Fixed(_) => None,
+                KernelRadius::Variable => Some(radius_pipeline(gl, size, settings.radii)?),
             },
             searched: false,
             spreads: Spreads::new(gl, size, &settings)?,
@@ -70,7 +70,7 @@ impl IrradiancePipeline {
         settings.validate()?;
         // Refuses an empty size as well.
         let radii = RadiusPipeline::memory_required(size, &settings.radii)?.at_creation;
-        let radii = if settings.radius == RadiusChoice::Variable { radii } else { 0 };
+        let radii = if settings.radius == KernelRadius::Variable { radii } else { 0 };
         Ok(radii + bytes_of(&[DensityStage::shape(size)]) + Spreads::bytes(size, settings))
     }
 
@@ -113,7 +113,7 @@ impl IrradiancePipeline {
         settings.validate()?;
         let size = self.size();
         let is_known = |pipeline: &RadiusPipeline| *pipeline.settings() == settings.radii;
-        let wants_radii = settings.radius == RadiusChoice::Variable;
+        let wants_radii = settings.radius == KernelRadius::Variable;
         let searches = if wants_radii && !self.radii.as_ref().is_some_and(is_known) {
             Some(radius_pipeline(&self.gl, size, settings.radii)?)
         } else {
@@ -183,9 +183,9 @@ impl IrradiancePipeline {
             self.search()?;
         }
         let radius = match (self.settings.radius, &self.radii) {
-            (RadiusChoice::Fixed(radius), _) => ChosenRadius::Fixed(radius),
-            (RadiusChoice::Variable, Some(radii)) => ChosenRadius::Map(radii.radii()),
-            (RadiusChoice::Variable, None) => unreachable!("made with a search"),
+            (KernelRadius::Fixed(radius), _) => KernelRadii::Fixed(radius),
+            (KernelRadius::Variable, Some(radii)) => KernelRadii::Map(radii.radii()),
+            (KernelRadius::Variable, None) => unreachable!("made with a search"),
         };
         self.spreads.add(surfaces, photons, self.density.power(), radius)
     }
@@ -264,7 +264,7 @@ fn radius_pipeline(gl: &Gl, size: UVec2, settings: Settings) -> Result<RadiusPip
 /// gathers of all kernels.
 #[must_use]
 pub fn shader_sources() -> Vec<ShaderSource> {
-    let radii = [RadiusChoice::Variable, RadiusChoice::Fixed(1)];
+    let radii = [KernelRadius::Variable, KernelRadius::Fixed(1)];
     let kernels = Kernel::ALL.into_iter().flat_map(|kernel| radii.map(|radius| (kernel, radius)));
     let spreads = kernels.flat_map(|(kernel, radius)| spread_sources(kernel, radius));
     std::iter::once(density_source()).chain(spreads).collect()
@@ -278,7 +278,7 @@ pub fn density_source() -> ShaderSource {
 
 /// The shaders of splats and gathers by one kernel, for variable radii, or fixed ones of any width.
 #[must_use]
-pub fn spread_sources(kernel: Kernel, radius: RadiusChoice) -> Vec<ShaderSource> {
+pub fn spread_sources(kernel: Kernel, radius: KernelRadius) -> Vec<ShaderSource> {
     let usual = IrradianceSettings { radius, kernel, ..IrradianceSettings::default() };
     let gather = |count_correction| {
         gather::source(&IrradianceSettings { estimate: Estimate::Gather { count_correction }, ..usual })

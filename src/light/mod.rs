@@ -3,7 +3,7 @@
 mod density;
 mod gather;
 mod irradiance;
-mod kernel;
+mod kernel_pass;
 mod splat;
 mod spread;
 

@@ -22,14 +22,14 @@
 
 use glam::{UVec2, Vec4};
 
-use super::kernel::{check, read_radius, source};
+use super::kernel_pass::{check, read_radius, source};
 use crate::error::Result;
 use crate::gl::{
     Gl, Pass, Program, ShaderSource, StateGuard, Target, TargetShape, Targets, TextureFormat, TextureShape,
     bytes_of, glsl,
 };
-use crate::maps::{ChosenRadius, IrradianceMap, PhotonPoints, SurfaceMaps};
-use crate::settings::{IrradianceSettings, RadiusChoice};
+use crate::maps::{IrradianceMap, KernelRadii, PhotonPoints, SurfaceMaps};
+use crate::settings::{IrradianceSettings, KernelRadius};
 
 const COVERED: &str = "splat covered";
 const SPREAD: &str = "splat spread";
@@ -46,7 +46,7 @@ pub struct SplatStage {
     spread: Program,
     addition: Program,
     /// Of which kind its radii are.
-    radius: RadiusChoice,
+    radius: KernelRadius,
     /// The covered area of each photon of a chunk.
     table: Target,
     /// What the chunk's kernels add up to, before it is added to all.
@@ -111,7 +111,7 @@ impl SplatStage {
         &mut self,
         surfaces: &SurfaceMaps,
         photons: &PhotonPoints,
-        radius: ChosenRadius<'_>,
+        radius: KernelRadii<'_>,
     ) -> Result<&IrradianceMap> {
         self.clear();
         self.add(surfaces, photons, radius)
@@ -127,7 +127,7 @@ impl SplatStage {
         &mut self,
         surfaces: &SurfaceMaps,
         photons: &PhotonPoints,
-        radius: ChosenRadius<'_>,
+        radius: KernelRadii<'_>,
     ) -> Result<&IrradianceMap> {
         check(surfaces, self.irradiance.size(), radius, self.radius)?;
         let _state = StateGuard::new(&self.gl);
@@ -169,7 +169,7 @@ fn with_photon_kernel(source: ShaderSource) -> ShaderSource {
         .vertex_file(glsl!("common/photon.glsl"))
         .vertex_file(glsl!("common/kernel.glsl"))
         .vertex_file(glsl!("common/photon_kernel.glsl"))
-        .vertex_file(glsl!("common/chosen_radius.glsl"))
+        .vertex_file(glsl!("common/kernel_radius.glsl"))
 }
 
 /// The shaders of a splat.

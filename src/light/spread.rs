@@ -7,7 +7,7 @@ use super::gather::GatherStage;
 use super::splat::SplatStage;
 use crate::error::Result;
 use crate::gl::{Gl, TargetShape, Targets, bytes_of};
-use crate::maps::{ChosenRadius, IrradianceMap, PhotonPoints, PowerMap, SurfaceMaps};
+use crate::maps::{IrradianceMap, KernelRadii, PhotonPoints, PowerMap, SurfaceMaps};
 use crate::settings::{Estimate, IrradianceSettings, Kernel};
 
 /// Stages that were used, of which one is in use.
@@ -123,7 +123,7 @@ impl Spreads {
         surfaces: &SurfaceMaps,
         photons: &PhotonPoints,
         power: &PowerMap,
-        radius: ChosenRadius<'_>,
+        radius: KernelRadii<'_>,
     ) -> Result<&IrradianceMap> {
         match &mut self.made[self.current].stage {
             Stage::Splat(splat) => splat.add(surfaces, photons, radius),

@@ -17,7 +17,7 @@ pub(crate) use frame::Rectangle;
 pub use frame::{Changed, Frame};
 pub use irradiance::IrradianceMap;
 pub use mask::{Mask, MaskMaker};
-pub use photons::{ChosenRadius, PhotonPoints};
+pub use photons::{KernelRadii, PhotonPoints};
 pub use position::{HostDepth, PositionMaker};
 pub use power::PowerMap;
 pub use radius::RadiusMap;

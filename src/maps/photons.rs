@@ -97,14 +97,14 @@ impl PhotonPoints {
 
 /// Where the radii of kernels come from.
 #[derive(Clone, Copy, Debug)]
-pub enum ChosenRadius<'a> {
+pub enum KernelRadii<'a> {
     /// Each pixel's own.
     Map(&'a RadiusMap),
     /// The same for all, in pixels, up to [`MAX_PICTURE_RADIUS`](crate::settings::MAX_PICTURE_RADIUS).
     Fixed(u32),
 }
 
-impl ChosenRadius<'_> {
+impl KernelRadii<'_> {
     /// Whether it is the same for all.
     #[must_use]
     pub fn is_fixed(self) -> bool {

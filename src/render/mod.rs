@@ -38,7 +38,7 @@ use crate::light::{self, IrradiancePipeline};
 use crate::maps::{PhotonPoints, SurfaceMaps};
 use crate::photon::{Emission, PhotonPoint, TraceSettings};
 use crate::scene::Scene;
-use crate::settings::{PictureSettings, RadiusChoice};
+use crate::settings::{KernelRadius, PictureSettings};
 use nearest::PhotonGrid;
 use prepared::Prepared;
 use seen_through::{Wanted, seen_through};
@@ -163,12 +163,12 @@ impl Renderer {
         let (position, normal) = (self.surfaces.read_position()?, self.surfaces.read_normal()?);
         let size = self.surfaces.size();
         let (radius, limited) = match (settings.radius, self.pipeline.radii()) {
-            (RadiusChoice::Fixed(radius), _) => (Image::filled(size, radius), Image::filled(size, 0)),
-            (RadiusChoice::Variable, Some(radii)) => {
+            (KernelRadius::Fixed(radius), _) => (Image::filled(size, radius), Image::filled(size, 0)),
+            (KernelRadius::Variable, Some(radii)) => {
                 let limited = radii.read_limited()?;
                 (radii.read()?, limited.unwrap_or_else(|| unreachable!("the settings ask for the mask")))
             }
-            (RadiusChoice::Variable, None) => unreachable!("variable radii were searched"),
+            (KernelRadius::Variable, None) => unreachable!("variable radii were searched"),
         };
         let layers = Layers {
             beauty: shaded.beauty.map(rgb),

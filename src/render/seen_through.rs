@@ -9,7 +9,7 @@ use super::add;
 use super::nearest::{PhotonGrid, Width};
 use super::sight::Place;
 use crate::image::Image;
-use crate::settings::{IrradianceSettings, Kernel, RadiusChoice, Search};
+use crate::settings::{IrradianceSettings, Kernel, KernelRadius, Search};
 use crate::view::View;
 
 /// How wide the disc of a place in a mirror or behind glass is, in pixels.
@@ -26,8 +26,8 @@ impl Wanted {
     pub(super) fn of(settings: &IrradianceSettings) -> Self {
         let Search { min_photons, max_radius, .. } = settings.radii.search;
         match settings.radius {
-            RadiusChoice::Variable => Self::Holding(min_photons, max_radius),
-            RadiusChoice::Fixed(radius) => Self::Fixed(radius),
+            KernelRadius::Variable => Self::Holding(min_photons, max_radius),
+            KernelRadius::Fixed(radius) => Self::Fixed(radius),
         }
     }
 }

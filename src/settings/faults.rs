@@ -1,7 +1,5 @@
 //! The faults of the thesis's printed listings, which can be switched on to measure what they spoil.
 
-use super::{Edges, Method, SatBuild, SatSamples, Settings, Split};
-
 /// Faults of the thesis's printed listings, each of which can be switched on (see
 /// [`structure`](crate::radius::tables#as-printed) for what they do).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -53,29 +51,5 @@ impl Faults {
     #[must_use]
     pub fn in_table_sampling(self) -> bool {
         self.clamp_to_63 || self.border_test || self.corner_test
-    }
-}
-
-impl Settings {
-    /// The faults that these settings let into the computation: those of the method and the edge rule in use.
-    #[must_use]
-    pub fn reaching_faults(&self) -> Faults {
-        let in_table = self.method == Method::SummedAreaTable;
-        let in_doubling = in_table && self.laboratory.sat_build == SatBuild::Doubling;
-        let faults = self.laboratory.faults;
-        Faults {
-            clamp_to_63: faults.clamp_to_63 && in_table,
-            border_test: faults.border_test && in_table,
-            corner_test: faults.corner_test && in_table,
-            swapped_axes: faults.swapped_axes && in_doubling,
-            // The listing for 2 samples is right; its extension to more is not.
-            sample_stride: faults.sample_stride
-                && in_doubling
-                && self.laboratory.sat_samples > SatSamples::Two,
-            forgotten_strip: faults.forgotten_strip
-                && matches!(self.method, Method::Pyramid | Method::AveragedMipmap)
-                && self.laboratory.split == Split::Odd,
-            float_ratio: faults.float_ratio && self.search.edges == Edges::Scale,
-        }
     }
 }

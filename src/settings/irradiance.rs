@@ -1,6 +1,6 @@
 //! What is asked of an [`IrradiancePipeline`](crate::IrradiancePipeline).
 
-use super::{Kernel, MAX_PICTURE_RADIUS, RadiusChoice, Search, Settings};
+use super::{Kernel, KernelRadius, MAX_PICTURE_RADIUS, Search, Settings};
 use crate::error::{Error, Result};
 
 /// How photons become irradiance.
@@ -23,7 +23,7 @@ pub enum Estimate {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct IrradianceSettings {
     /// Where the radius of each kernel comes from.
-    pub radius: RadiusChoice,
+    pub radius: KernelRadius,
     /// How radii are searched, if they are variable; MR goes up to [`MAX_PICTURE_RADIUS`], and there is no
     /// mask.
     #[cfg_attr(feature = "serde", serde(rename = "search"))]
@@ -49,7 +49,7 @@ impl Default for IrradianceSettings {
         let usual = Settings::default();
         let search = Search { min_photons: 400, max_radius: 64, ..usual.search };
         Self {
-            radius: RadiusChoice::Variable,
+            radius: KernelRadius::Variable,
             radii: Settings { search, ..usual },
             kernel: Kernel::Silverman,
             estimate: Estimate::Splat,
@@ -72,8 +72,8 @@ impl IrradianceSettings {
             });
         }
         match self.radius {
-            RadiusChoice::Variable => check_radius("max_radius", self.radii.search.max_radius, ""),
-            RadiusChoice::Fixed(radius) => check_radius("radius", radius, "fixed:"),
+            KernelRadius::Variable => check_radius("max_radius", self.radii.search.max_radius, ""),
+            KernelRadius::Fixed(radius) => check_radius("radius", radius, "fixed:"),
         }
     }
 }

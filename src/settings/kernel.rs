@@ -70,14 +70,14 @@ impl Kernel {
 /// The radius of each pixel's kernel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
-pub enum RadiusChoice {
+pub enum KernelRadius {
     /// From the radius map: the smallest box that holds n photons.
     Variable,
     /// The same for all, in pixels.
     Fixed(u32),
 }
 
-impl RadiusChoice {
+impl KernelRadius {
     /// Whether it is the same for all.
     #[must_use]
     pub fn is_fixed(self) -> bool {

@@ -1,7 +1,7 @@
 //! What the thesis measures and no host has to decide: variants of methods and builds, and results that may
 //! be wrong.
 
-use super::{Faults, Method};
+use super::{Edges, Faults, Method, Settings};
 
 /// Variants that are measured against each other; the [default](Self::default) is the right and fast one of
 /// each.
@@ -175,4 +175,28 @@ pub enum Exactness {
     Required,
     /// It is computed all the same, to measure how wrong it gets.
     Waived,
+}
+
+impl Settings {
+    /// The faults that these settings let into the computation: those of the method and the edge rule in use.
+    #[must_use]
+    pub fn reaching_faults(&self) -> Faults {
+        let in_table = self.method == Method::SummedAreaTable;
+        let in_doubling = in_table && self.laboratory.sat_build == SatBuild::Doubling;
+        let faults = self.laboratory.faults;
+        Faults {
+            clamp_to_63: faults.clamp_to_63 && in_table,
+            border_test: faults.border_test && in_table,
+            corner_test: faults.corner_test && in_table,
+            swapped_axes: faults.swapped_axes && in_doubling,
+            // The listing for 2 samples is right; its extension to more is not.
+            sample_stride: faults.sample_stride
+                && in_doubling
+                && self.laboratory.sat_samples > SatSamples::Two,
+            forgotten_strip: faults.forgotten_strip
+                && matches!(self.method, Method::Pyramid | Method::AveragedMipmap)
+                && self.laboratory.split == Split::Odd,
+            float_ratio: faults.float_ratio && self.search.edges == Edges::Scale,
+        }
+    }
 }

@@ -13,18 +13,18 @@ mod method;
 mod names;
 #[cfg(feature = "scene")]
 mod picture;
-mod search;
+mod question;
 mod validate;
 
 pub use faults::Faults;
 pub use irradiance::{Estimate, IrradianceSettings};
-pub use kernel::{Kernel, MAX_PICTURE_RADIUS, RadiusChoice};
+pub use kernel::{Kernel, KernelRadius, MAX_PICTURE_RADIUS};
 pub use laboratory::{Exactness, Laboratory, Matching, SatBuild, SatSamples, Split, Variation};
 pub use method::{Method, Storage};
 #[cfg(feature = "scene")]
 pub use picture::{DirectLight, FirstBounce, PictureSettings};
-pub(crate) use search::BRACKET_TILE_SIDE;
-pub use search::{Edges, MAX_RADIUS_LIMIT, Order, Planning, Search};
+pub(crate) use question::BRACKET_TILE_SIDE;
+pub use question::{Edges, MAX_RADIUS_LIMIT, Order, Planning, Search};
 
 /// Everything that a [`RadiusPipeline`](crate::RadiusPipeline) needs to know beside the map's size.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

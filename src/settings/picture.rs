@@ -2,7 +2,7 @@
 
 use glam::UVec2;
 
-use super::{Estimate, IrradianceSettings, Kernel, RadiusChoice, Search, Settings};
+use super::{Estimate, IrradianceSettings, Kernel, KernelRadius, Search, Settings};
 use crate::error::{Error, Result};
 
 /// How photons find what they meet first.
@@ -40,7 +40,7 @@ pub struct PictureSettings {
     /// MR: the largest radius in pixels, from 1 to [`MAX_PICTURE_RADIUS`](super::MAX_PICTURE_RADIUS).
     pub max_radius: u32,
     /// Variable or fixed.
-    pub radius: RadiusChoice,
+    pub radius: KernelRadius,
     /// The falloff.
     pub kernel: Kernel,
     /// By rays or maps.
@@ -66,7 +66,7 @@ impl Default for PictureSettings {
             size: UVec2::splat(512),
             min_photons: 400,
             max_radius: 64,
-            radius: RadiusChoice::Variable,
+            radius: KernelRadius::Variable,
             kernel: Kernel::Silverman,
             first_bounce: FirstBounce::Rays,
             estimate: Estimate::Splat,
@@ -106,7 +106,7 @@ impl PictureSettings {
         }
         // MR is in the program's options even where radii are fixed, and answers for itself.
         let irradiance = self.irradiance();
-        IrradianceSettings { radius: RadiusChoice::Variable, ..irradiance }.validate()?;
+        IrradianceSettings { radius: KernelRadius::Variable, ..irradiance }.validate()?;
         irradiance.validate()?;
         if self.light_samples == 0 {
             return refuse("light_samples", "0".to_owned(), "a light takes at least 1 shadow ray");

@@ -3,7 +3,7 @@
 use varikernel::photon::{Emission, FirstHit, Landings, TraceSettings, trace, trace_from_hits};
 use varikernel::render::{Renderer, first_hits};
 use varikernel::scene::{Ray, Scene};
-use varikernel::settings::{FirstBounce, Kernel, PictureSettings, RadiusChoice};
+use varikernel::settings::{FirstBounce, Kernel, KernelRadius, PictureSettings};
 
 use crate::stage::settings;
 use crate::support::egl;
@@ -98,7 +98,7 @@ fn a_picture_can_be_made_from_maps() {
     let scene = Scene::shipped("cornell-glass").unwrap();
     let settings = PictureSettings {
         first_bounce: FirstBounce::Maps,
-        ..settings(32, Kernel::Silverman, RadiusChoice::Variable)
+        ..settings(32, Kernel::Silverman, KernelRadius::Variable)
     };
     let trace = TraceSettings { photons: 5_000, ..TraceSettings::default() };
     let mut renderer = Renderer::new(&gl, &scene, &settings, &trace, &mut |_| ()).unwrap();

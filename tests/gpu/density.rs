@@ -4,7 +4,7 @@ use glam::UVec2;
 use varikernel::reference::photon_density;
 use varikernel::render::Renderer;
 use varikernel::scene::Scene;
-use varikernel::settings::{Kernel, RadiusChoice};
+use varikernel::settings::{Kernel, KernelRadius};
 
 use crate::stage::{photon_at, settings, shown, traced, wall};
 use crate::support::egl;
@@ -15,7 +15,7 @@ fn counts_are_those_of_the_definition_and_a_lost_photon_is_seen() {
     for name in ["cornell-glass", "mirror-ring"] {
         let scene = Scene::shipped(name).unwrap();
         let photons = traced(&scene, 20_000, 3);
-        let settings = settings(64, Kernel::Box, RadiusChoice::Fixed(1));
+        let settings = settings(64, Kernel::Box, KernelRadius::Fixed(1));
         let mut renderer = Renderer::with_photons(&gl, &scene, &settings, &photons).unwrap();
         let shown = shown(&renderer);
         let (layers, account) = renderer.picture(&settings).unwrap();
@@ -40,7 +40,7 @@ fn counts_are_those_of_the_definition_and_a_lost_photon_is_seen() {
 fn what_is_hidden_turned_away_or_outside_does_not_count() {
     let gl = egl();
     let scene = wall();
-    let settings = settings(16, Kernel::Box, RadiusChoice::Fixed(1));
+    let settings = settings(16, Kernel::Box, KernelRadius::Fixed(1));
     let view = scene.view(UVec2::splat(16));
     let photon = photon_at(&scene, &view, 5, 6, 1.0).unwrap();
     let behind = {

@@ -15,7 +15,7 @@ use std::ffi::{CStr, c_void};
 use glam::UVec2;
 use glow::HasContext as _;
 use varikernel::gl::TextureFormat;
-use varikernel::settings::{Edges, IrradianceSettings, Method, Order, RadiusChoice, Search, Settings};
+use varikernel::settings::{Edges, IrradianceSettings, KernelRadius, Method, Order, Search, Settings};
 use varikernel::{
     Changed, CountBounds, DensityMap, Frame, Gl, Image, IrradiancePipeline, Mask, PhotonPoints,
     RadiusPipeline, StatePolicy, reference,
@@ -284,7 +284,7 @@ fn adaptive_pipeline(gl: &Gl) {
 
 fn irradiance_pipeline(gl: &Gl) {
     let HostPicture { mut positions, mut surfaces, photons, view } = HostPicture::new(gl, SIZE);
-    for radius in [RadiusChoice::Variable, RadiusChoice::Fixed(2)] {
+    for radius in [KernelRadius::Variable, KernelRadius::Fixed(2)] {
         let settings = IrradianceSettings { radius, ..IrradianceSettings::default() };
         let mut pipeline = IrradiancePipeline::new(gl, SIZE, settings).unwrap();
         for _ in 0..2 {

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use varikernel::photon::TraceSettings;
 use varikernel::render::{Layers, Live, LiveSettings, Reference, Renderer};
 use varikernel::scene::Scene;
-use varikernel::settings::{DirectLight, Estimate, FirstBounce, Kernel, PictureSettings, RadiusChoice};
+use varikernel::settings::{DirectLight, Estimate, FirstBounce, Kernel, KernelRadius, PictureSettings};
 use varikernel::{Gl, Image};
 
 use crate::stage::{scene, settings};
@@ -71,7 +71,7 @@ fn every_way(gl: &Gl, scene: &Arc<Scene>, trace: &TraceSettings) -> Vec<(&'stati
         min_photons: 50,
         max_radius: 8,
         light_samples: 36,
-        ..settings(SIDE, Kernel::Epanechnikov, RadiusChoice::Variable)
+        ..settings(SIDE, Kernel::Epanechnikov, KernelRadius::Variable)
     };
     let picture = |settings: PictureSettings| -> Layers {
         let mut renderer = Renderer::new(gl, scene, &settings, trace, &mut |_| ()).unwrap();
@@ -82,7 +82,7 @@ fn every_way(gl: &Gl, scene: &Arc<Scene>, trace: &TraceSettings) -> Vec<(&'stati
         ("splats", mean(&picture(usual).beauty)),
         (
             "a fixed radius",
-            mean(&picture(PictureSettings { radius: RadiusChoice::Fixed(2), ..usual }).beauty),
+            mean(&picture(PictureSettings { radius: KernelRadius::Fixed(2), ..usual }).beauty),
         ),
         ("gather", mean(&picture(PictureSettings { estimate: gather, ..usual }).beauty)),
         ("shadow maps", mean(&picture(PictureSettings { direct: DirectLight::ShadowMap, ..usual }).beauty)),
@@ -143,7 +143,7 @@ fn a_wall_that_shines_a_little_is_as_bright_as_one_that_does_not_and_a_little_mo
             quads = [[[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]]]
             "#
         ));
-        let settings = settings(48, Kernel::Box, RadiusChoice::Variable);
+        let settings = settings(48, Kernel::Box, KernelRadius::Variable);
         let trace = TraceSettings { photons: 2_000, ..TraceSettings::default() };
         let mut renderer = Renderer::new(&gl, &scene, &settings, &trace, &mut |_| ()).unwrap();
         renderer.picture(&settings).unwrap().0.direct
@@ -190,7 +190,7 @@ fn through(gl: &Gl, material: &str) -> f32 {
         quads = [[[9, -9, 6], [-9, -9, 6], [-9, 9, 6], [9, 9, 6]]]
         "#
     ));
-    let settings = settings(17, Kernel::Box, RadiusChoice::Fixed(1));
+    let settings = settings(17, Kernel::Box, KernelRadius::Fixed(1));
     let mut renderer = Renderer::with_photons(gl, &scene, &settings, &[]).unwrap();
     renderer.picture(&settings).unwrap().0.beauty.at(8, 8)[0]
 }

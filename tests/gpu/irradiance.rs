@@ -8,10 +8,10 @@ use glow::HasContext as _;
 use varikernel::render::Renderer;
 use varikernel::scene::Scene;
 use varikernel::settings::{
-    Edges, Estimate, IrradianceSettings, Kernel, PictureSettings, RadiusChoice, Search, Settings,
+    Edges, Estimate, IrradianceSettings, Kernel, KernelRadius, PictureSettings, Search, Settings,
 };
 use varikernel::{
-    ChosenRadius, DensityStage, Error, Gl, HostDepth, HostSurfaces, Image, IrradiancePipeline, PhotonPoint,
+    DensityStage, Error, Gl, HostDepth, HostSurfaces, Image, IrradiancePipeline, KernelRadii, PhotonPoint,
     PhotonPoints, PositionMaker, SplatStage, SurfaceMaps, View, reference,
 };
 
@@ -25,14 +25,14 @@ fn question() -> Search {
 }
 
 /// Radii and estimates that go together: all.
-const WAYS: [(RadiusChoice, Estimate); 4] = [
-    (RadiusChoice::Variable, Estimate::Splat),
-    (RadiusChoice::Fixed(3), Estimate::Splat),
-    (RadiusChoice::Variable, Estimate::Gather { count_correction: true }),
-    (RadiusChoice::Fixed(3), Estimate::Gather { count_correction: false }),
+const WAYS: [(KernelRadius, Estimate); 4] = [
+    (KernelRadius::Variable, Estimate::Splat),
+    (KernelRadius::Fixed(3), Estimate::Splat),
+    (KernelRadius::Variable, Estimate::Gather { count_correction: true }),
+    (KernelRadius::Fixed(3), Estimate::Gather { count_correction: false }),
 ];
 
-fn settings(radius: RadiusChoice) -> IrradianceSettings {
+fn settings(radius: KernelRadius) -> IrradianceSettings {
     IrradianceSettings {
         radius,
         kernel: Kernel::Epanechnikov,
@@ -41,7 +41,7 @@ fn settings(radius: RadiusChoice) -> IrradianceSettings {
     }
 }
 
-fn picture_settings(radius: RadiusChoice) -> PictureSettings {
+fn picture_settings(radius: KernelRadius) -> PictureSettings {
     PictureSettings {
         size: UVec2::splat(SIDE),
         min_photons: question().min_photons,
@@ -84,7 +84,7 @@ impl Stand {
     fn new(gl: &Gl, photons: u32) -> Self {
         let scene = Scene::shipped("cornell-boxes").unwrap();
         let photons = traced(&scene, photons, 1);
-        let settings = picture_settings(RadiusChoice::Variable);
+        let settings = picture_settings(KernelRadius::Variable);
         let renderer = Renderer::with_photons(gl, &scene, &settings, &photons).unwrap();
         let own = shown(&renderer);
         let host = HostSurfaces { position: rgba32(gl, &own.position), normal: rgba32(gl, &own.normal) };
@@ -127,7 +127,7 @@ fn a_host_gets_the_irradiance_of_the_renderer_to_the_last_bit() {
             }
             assert_eq!(pipeline.density_stage().read_counts().unwrap(), layers.density);
             let radii = pipeline.radii().map(|radii| radii.read().unwrap());
-            assert_eq!(radii, matches!(radius, RadiusChoice::Variable).then_some(layers.radius));
+            assert_eq!(radii, matches!(radius, KernelRadius::Variable).then_some(layers.radius));
         }
     }
 }
@@ -148,10 +148,10 @@ fn other_settings_give_what_a_new_pipeline_would_and_a_failure_leaves_the_old_on
         pipeline.clear_light();
         let found = pipeline.spread(&stand.surfaces, &points).unwrap().read().unwrap();
         assert_eq!(found, expected, "{way:?}");
-        assert_eq!(pipeline.radii().is_some(), way.0 == RadiusChoice::Variable);
+        assert_eq!(pipeline.radii().is_some(), way.0 == KernelRadius::Variable);
 
         let held = gl.texture_bytes();
-        pipeline.change(settings(RadiusChoice::Fixed(97))).unwrap_err();
+        pipeline.change(settings(KernelRadius::Fixed(97))).unwrap_err();
         assert_eq!(*pipeline.settings(), asked(way));
         assert_eq!(gl.texture_bytes(), held);
         pipeline.clear_light();
@@ -159,7 +159,7 @@ fn other_settings_give_what_a_new_pipeline_would_and_a_failure_leaves_the_old_on
     }
     // Another question is another search, of the photons that are counted.
     let other = Settings { search: Search { min_photons: 9, ..question() }, ..Settings::default() };
-    let other = IrradianceSettings { radii: other, ..settings(RadiusChoice::Variable) };
+    let other = IrradianceSettings { radii: other, ..settings(KernelRadius::Variable) };
     pipeline.change(other).unwrap();
     pipeline.spread(&stand.surfaces, &points).unwrap();
     let mut fresh = IrradiancePipeline::new(&gl, size, other).unwrap();
@@ -195,7 +195,7 @@ fn photons_in_a_buffer_of_the_host_are_those_that_were_uploaded() {
     assert_eq!(hosts.count(), 70_000);
     let mut ours = PhotonPoints::new(&gl);
     ours.upload(&photons).unwrap();
-    let fixed = settings(RadiusChoice::Fixed(1));
+    let fixed = settings(KernelRadius::Fixed(1));
     let mut pipeline = IrradiancePipeline::new(&gl, UVec2::splat(SIDE), fixed).unwrap();
     let expected = pipeline.render(&stand.surfaces, &ours).unwrap().read().unwrap();
     assert_eq!(pipeline.render(&stand.surfaces, &hosts).unwrap().read().unwrap(), expected);
@@ -226,7 +226,7 @@ fn replaced_photons_are_the_new_ones_alone() {
     let gl = egl();
     let stand = Stand::new(&gl, 2000);
     let size = UVec2::splat(SIDE);
-    let mut pipeline = IrradiancePipeline::new(&gl, size, settings(RadiusChoice::Fixed(2))).unwrap();
+    let mut pipeline = IrradiancePipeline::new(&gl, size, settings(KernelRadius::Fixed(2))).unwrap();
     let expected = pipeline.render(&stand.surfaces, &stand.uploaded(&gl)).unwrap().read().unwrap();
     let mut points = stand.uploaded(&gl);
     points.replace(&stand.photons[..10]).unwrap();
@@ -246,7 +246,7 @@ fn parts_of_the_photons_are_drawn_with_the_radii_of_all_so_far() {
     let shown = shown(&stand.renderer);
     let (first, second) = stand.photons.split_at(stand.photons.len() / 3);
     let mut pipeline =
-        IrradiancePipeline::new(&gl, shown.view.size(), settings(RadiusChoice::Variable)).unwrap();
+        IrradiancePipeline::new(&gl, shown.view.size(), settings(KernelRadius::Variable)).unwrap();
     let mut points = PhotonPoints::new(&gl);
     for part in [first, second] {
         points.replace(part).unwrap();
@@ -280,18 +280,18 @@ fn stages_are_usable_apart() {
     let gl = egl();
     let stand = Stand::new(&gl, 2000);
     let (size, points) = (UVec2::splat(SIDE), stand.uploaded(&gl));
-    let mut whole = IrradiancePipeline::new(&gl, size, settings(RadiusChoice::Variable)).unwrap();
+    let mut whole = IrradiancePipeline::new(&gl, size, settings(KernelRadius::Variable)).unwrap();
     let expected = whole.render(&stand.surfaces, &points).unwrap().read().unwrap();
 
     let mut density = DensityStage::new(&gl, size).unwrap();
     let map = density.add(&stand.surfaces, &points).unwrap();
-    let search = settings(RadiusChoice::Variable).radii;
+    let search = settings(KernelRadius::Variable).radii;
     let mut radius = varikernel::RadiusPipeline::new(&gl, size, map.format(), search).unwrap();
     let radii = radius.render(map).unwrap();
-    let mut splat = SplatStage::new(&gl, size, &settings(RadiusChoice::Variable)).unwrap();
-    let found = splat.splat(&stand.surfaces, &points, ChosenRadius::Map(radii)).unwrap().read().unwrap();
+    let mut splat = SplatStage::new(&gl, size, &settings(KernelRadius::Variable)).unwrap();
+    let found = splat.splat(&stand.surfaces, &points, KernelRadii::Map(radii)).unwrap().read().unwrap();
     assert_eq!(found, expected);
-    let error = splat.splat(&stand.surfaces, &points, ChosenRadius::Fixed(2)).unwrap_err();
+    let error = splat.splat(&stand.surfaces, &points, KernelRadii::Fixed(2)).unwrap_err();
     assert_eq!(error.to_string(), "radius of the kernels: expected a radius map, got a fixed one");
 }
 
@@ -333,7 +333,7 @@ fn positions_come_from_a_depth_buffer() {
         let position = maker.render(view).unwrap();
         (maker, position)
     };
-    let mut pipeline = IrradiancePipeline::new(&gl, size, settings(RadiusChoice::Fixed(2))).unwrap();
+    let mut pipeline = IrradiancePipeline::new(&gl, size, settings(KernelRadius::Fixed(2))).unwrap();
     let expected = pipeline.render(&stand.surfaces, &points).unwrap().read().unwrap();
     let expected = rgb(&expected).map(|light| light.map(f64::from));
     for (view, is_reversed) in [(view, false), (reversed, true)] {
@@ -381,7 +381,7 @@ fn normals_may_be_of_16_bits_and_without_a_number() {
     let stand = Stand::new(&gl, 3000);
     let own = shown(&stand.renderer);
     let size = own.view.size();
-    let mut pipeline = IrradiancePipeline::new(&gl, size, settings(RadiusChoice::Fixed(2))).unwrap();
+    let mut pipeline = IrradiancePipeline::new(&gl, size, settings(KernelRadius::Fixed(2))).unwrap();
     let mut light = |normal: glow::Texture, photons: &[PhotonPoint]| {
         let host = HostSurfaces { position: rgba32(&gl, &own.position), normal };
         let surfaces = SurfaceMaps::borrow(&gl, own.view, host).unwrap();
@@ -433,13 +433,13 @@ fn what_does_not_fit_is_refused_with_the_names_of_its_enums() {
 
     let small = UVec2::splat(8);
     let points = stand.uploaded(&gl);
-    let mut pipeline = IrradiancePipeline::new(&gl, small, settings(RadiusChoice::Variable)).unwrap();
+    let mut pipeline = IrradiancePipeline::new(&gl, small, settings(KernelRadius::Variable)).unwrap();
     let error = pipeline.render(&stand.surfaces, &points).unwrap_err().to_string();
     assert_eq!(error, "surfaces: expected 8 x 8, got 48 x 48");
     let error =
-        IrradiancePipeline::new(&gl, small, settings(RadiusChoice::Fixed(97))).unwrap_err().to_string();
+        IrradiancePipeline::new(&gl, small, settings(KernelRadius::Fixed(97))).unwrap_err().to_string();
     assert_eq!(error, "radius = fixed:97 is not possible: a kernel's radius goes from 1 to 96 pixels");
-    let masked = Settings { masked: true, ..settings(RadiusChoice::Variable).radii };
-    let masked = IrradianceSettings { radii: masked, ..settings(RadiusChoice::Variable) };
+    let masked = Settings { masked: true, ..settings(KernelRadius::Variable).radii };
+    let masked = IrradianceSettings { radii: masked, ..settings(KernelRadius::Variable) };
     assert!(IrradiancePipeline::new(&gl, small, masked).is_err());
 }

@@ -5,7 +5,7 @@ use varikernel::photon::PhotonPoint;
 use varikernel::reference::{self, Shown};
 use varikernel::render::Renderer;
 use varikernel::scene::{Ray, Scene};
-use varikernel::settings::{Kernel, PictureSettings, RadiusChoice};
+use varikernel::settings::{Kernel, KernelRadius, PictureSettings};
 use varikernel::{Gl, Image};
 
 use crate::stage::{irradiance, scene, settings, shown, traced};
@@ -63,7 +63,7 @@ fn nothing_gets_from_one_face_to_another() {
     let gl = egl();
     let boxes = Scene::shipped("cornell-boxes").unwrap();
     let photons = traced(&boxes, 4_000, 3);
-    for radius in [RadiusChoice::Variable, RadiusChoice::Fixed(12)] {
+    for radius in [KernelRadius::Variable, KernelRadius::Fixed(12)] {
         let settings = settings(64, Kernel::Silverman, radius);
         let shares = shares_elsewhere(&gl, &boxes, &settings, &photons);
         // Five walls, and of each box the top and two or three sides.
@@ -85,7 +85,7 @@ fn nothing_gets_from_one_face_to_another() {
     let planted = shares_elsewhere(
         &gl,
         &one,
-        &settings(64, Kernel::Silverman, RadiusChoice::Fixed(40)),
+        &settings(64, Kernel::Silverman, KernelRadius::Fixed(40)),
         &traced(&one, 4_000, 3),
     );
     let most = planted.iter().map(|(_, share)| *share).fold(0.0, f64::max);
@@ -138,7 +138,7 @@ fn little_gets_through_the_boxes_along_the_floor() {
     let gl = egl();
     let scene = Scene::shipped("cornell-boxes").unwrap();
     let photons = traced(&scene, 30_000, 3);
-    let settings = settings(96, Kernel::Silverman, RadiusChoice::Variable);
+    let settings = settings(96, Kernel::Silverman, KernelRadius::Variable);
     let mut renderer = Renderer::with_photons(&gl, &scene, &settings, &photons).unwrap();
     let shown = shown(&renderer);
     let radius = renderer.picture(&settings).unwrap().0.radius;

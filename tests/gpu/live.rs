@@ -6,7 +6,7 @@ use glam::{UVec2, Vec3};
 use varikernel::photon::{Emission, PhotonPoint, TraceSettings, trace};
 use varikernel::render::{Live, LiveSettings, Renderer};
 use varikernel::scene::Scene;
-use varikernel::settings::{PictureSettings, RadiusChoice};
+use varikernel::settings::{KernelRadius, PictureSettings};
 use varikernel::{Error, Gl, Image};
 
 use crate::support::{egl, rmse};
@@ -56,7 +56,7 @@ fn mean(image: &Image<[f32; 3]>) -> f64 {
 fn one_step_has_the_indirect_light_of_the_renderer_to_the_last_bit() {
     let gl = egl();
     let scene = scene("cornell-boxes");
-    for radius in [RadiusChoice::Variable, RadiusChoice::Fixed(2)] {
+    for radius in [KernelRadius::Variable, KernelRadius::Fixed(2)] {
         let mut settings = settings(&scene);
         settings.irradiance.radius = radius;
         let live = after(&gl, &scene, settings, 1);

@@ -8,11 +8,11 @@ use std::process::Command;
 
 use glam::UVec2;
 use varikernel::gl::{StageTimes, Timer};
-use varikernel::settings::{Estimate, IrradianceSettings, Method, Order, RadiusChoice, Settings};
+use varikernel::settings::{Estimate, IrradianceSettings, KernelRadius, Method, Order, Settings};
 use varikernel::{
-    ChosenRadius, CountBounds, DensityMap, DensityStage, Error, Frame, GatherStage, Gl, HostDepth,
-    HostSurfaces, Image, IrradiancePipeline, Mask, MaskMaker, PositionMaker, RadiusMap, RadiusPipeline,
-    SplatStage, SurfaceMaps,
+    CountBounds, DensityMap, DensityStage, Error, Frame, GatherStage, Gl, HostDepth, HostSurfaces, Image,
+    IrradiancePipeline, KernelRadii, Mask, MaskMaker, PositionMaker, RadiusMap, RadiusPipeline, SplatStage,
+    SurfaceMaps,
 };
 
 use crate::calls::{Calls, counted};
@@ -48,7 +48,7 @@ impl Light {
         let host = HostPicture::new(gl, size);
         let mut pipeline = IrradiancePipeline::new(gl, size, IrradianceSettings::default()).unwrap();
         pipeline.render(&host.surfaces, &host.photons).unwrap();
-        let fixed = IrradianceSettings { radius: RadiusChoice::Fixed(2), ..IrradianceSettings::default() };
+        let fixed = IrradianceSettings { radius: KernelRadius::Fixed(2), ..IrradianceSettings::default() };
         Self {
             pipeline,
             density: DensityStage::new(gl, size).unwrap(),
@@ -65,7 +65,7 @@ impl Light {
         let Self { host, pipeline, density, splat, gather } = self;
         let HostPicture { positions, surfaces, photons, view } = host;
         let size = view.size();
-        let (fixed, usual) = (ChosenRadius::Fixed(2), IrradianceSettings::default());
+        let (fixed, usual) = (KernelRadii::Fixed(2), IrradianceSettings::default());
         let usual_gather =
             IrradianceSettings { estimate: Estimate::Gather { count_correction: true }, ..usual };
         let depth = HostDepth { texture: name, reversed: false, zero_to_one: false };

@@ -5,7 +5,7 @@
 use glam::UVec2;
 use varikernel::gl::DeviceInfo;
 use varikernel::settings::{
-    Edges, IrradianceSettings, Laboratory, Method, Order, Planning, RadiusChoice, SatBuild, Search, Settings,
+    Edges, IrradianceSettings, KernelRadius, Laboratory, Method, Order, Planning, SatBuild, Search, Settings,
 };
 use varikernel::{
     Changed, CountBounds, DensityMap, Error, Frame, Gl, Image, IrradiancePipeline, Mask, RadiusPipeline,
@@ -279,7 +279,7 @@ fn a_pipeline_that_plans_is_resized_while_a_census_is_on_its_way() {
 #[test]
 fn irradiance_takes_what_it_says_and_resizes_without_compiling() {
     let gl = egl();
-    for radius in [RadiusChoice::Variable, RadiusChoice::Fixed(3)] {
+    for radius in [KernelRadius::Variable, KernelRadius::Fixed(3)] {
         let settings = IrradianceSettings { radius, ..IrradianceSettings::default() };
         let mut pipeline = IrradiancePipeline::new(&gl, UVec2::ONE, settings).unwrap();
         let mut refused = 0;
@@ -306,7 +306,7 @@ fn irradiance_takes_what_it_says_and_resizes_without_compiling() {
     }
     assert_eq!(held(&gl), 0);
     // 10 x 3 pixels: 20 bytes of counts and power, 32 of light, 256 KiB of a table; radii apart.
-    let fixed = IrradianceSettings { radius: RadiusChoice::Fixed(1), ..IrradianceSettings::default() };
+    let fixed = IrradianceSettings { radius: KernelRadius::Fixed(1), ..IrradianceSettings::default() };
     let bytes = IrradiancePipeline::memory_required(UVec2::new(10, 3), &fixed).unwrap();
     assert_eq!(bytes, 30 * 52 + 4 * 256 * 256);
     assert!(IrradiancePipeline::memory_required(UVec2::new(0, 3), &fixed).is_err());

@@ -4,7 +4,7 @@ use glam::UVec2;
 use varikernel::photon::TraceSettings;
 use varikernel::render::{Layers, Reference, Renderer};
 use varikernel::scene::Scene;
-use varikernel::settings::{Estimate, Kernel, PictureSettings, RadiusChoice};
+use varikernel::settings::{Estimate, Kernel, KernelRadius, PictureSettings};
 
 use crate::stage::{scene, settings};
 use crate::support::{egl, rmse};
@@ -37,7 +37,7 @@ fn every_picture_of_the_shipped_scenes_is_finite() {
     let gl = egl();
     for name in Scene::shipped_names() {
         let scene = Scene::shipped(name).unwrap();
-        let settings = settings(40, Kernel::Cone, RadiusChoice::Variable);
+        let settings = settings(40, Kernel::Cone, KernelRadius::Variable);
         // Few photons: boxes without any, kernels over edges, places in mirrors without photons.
         for photons in [1, 3_000] {
             let trace = TraceSettings { photons, ..TraceSettings::default() };
@@ -59,7 +59,7 @@ fn a_view_of_nothing_is_black() {
     let gl = egl();
     let mut scene = Scene::shipped("cornell-boxes").unwrap();
     scene.camera.direction = -scene.camera.direction;
-    let settings = settings(24, Kernel::Box, RadiusChoice::Variable);
+    let settings = settings(24, Kernel::Box, KernelRadius::Variable);
     let trace = TraceSettings { photons: 500, ..TraceSettings::default() };
     let mut renderer = Renderer::new(&gl, &scene, &settings, &trace, &mut |_| ()).unwrap();
     let (layers, account) = renderer.picture(&settings).unwrap();
@@ -75,7 +75,7 @@ fn a_renderer_used_again_gives_the_radii_of_a_new_one() {
     let gl = egl();
     let scene = Scene::shipped("cornell-glass").unwrap();
     let photons = crate::stage::traced(&scene, 3000, 1);
-    let usual = settings(48, Kernel::Box, RadiusChoice::Variable);
+    let usual = settings(48, Kernel::Box, KernelRadius::Variable);
     let renderer = || Renderer::with_photons(&gl, &scene, &usual, &photons).unwrap();
     let mut used = renderer();
     let mut radii = Vec::new();
@@ -90,7 +90,7 @@ fn a_renderer_used_again_gives_the_radii_of_a_new_one() {
         used.warm_up(&settings).unwrap();
         let (warm, _) = used.picture(&settings).unwrap();
         assert_eq!((&warm.radius, warm.beauty), (&new.radius, new.beauty), "{settings:?}");
-        let fixed = PictureSettings { radius: RadiusChoice::Fixed(2), ..settings };
+        let fixed = PictureSettings { radius: KernelRadius::Fixed(2), ..settings };
         let [again, new] = [&mut used, &mut renderer()].map(|of| of.picture(&fixed).unwrap().0.beauty);
         assert_eq!(again, new, "{fixed:?}");
         radii.push(warm.radius);
@@ -103,11 +103,11 @@ fn a_renderer_used_again_gives_the_radii_of_a_new_one() {
 fn settings_out_of_range_are_refused_by_name() {
     let gl = egl();
     let scene = Scene::shipped("cornell-empty").unwrap();
-    let usual = settings(8, Kernel::Box, RadiusChoice::Variable);
+    let usual = settings(8, Kernel::Box, KernelRadius::Variable);
     for (settings, name) in [
         (PictureSettings { min_photons: 0, ..usual }, "min_photons"),
         (PictureSettings { max_radius: 97, ..usual }, "max_radius"),
-        (PictureSettings { radius: RadiusChoice::Fixed(0), ..usual }, "radius"),
+        (PictureSettings { radius: KernelRadius::Fixed(0), ..usual }, "radius"),
         (PictureSettings { light_samples: 0, ..usual }, "light_samples"),
         (PictureSettings { size: UVec2::new(0, 8), ..usual }, "size"),
     ] {
@@ -125,7 +125,7 @@ fn settings_out_of_range_are_refused_by_name() {
 fn sixteen_times_the_photons_bring_it_nearer_to_the_reference() {
     let gl = egl();
     let scene = Scene::shipped("cornell-empty").unwrap();
-    let settings = settings(32, Kernel::Epanechnikov, RadiusChoice::Variable);
+    let settings = settings(32, Kernel::Epanechnikov, KernelRadius::Variable);
     let trace = |photons, seed| TraceSettings { photons, bounces: 3, seed, ..TraceSettings::default() };
     let picture = |settings: &PictureSettings, photons, seed| {
         let mut renderer = Renderer::new(&gl, &scene, settings, &trace(photons, seed), &mut |_| ()).unwrap();
@@ -137,7 +137,7 @@ fn sixteen_times_the_photons_bring_it_nearer_to_the_reference() {
     }
     let reference = reference.picture().unwrap().indirect;
 
-    let fixed = PictureSettings { radius: RadiusChoice::Fixed(2), ..settings };
+    let fixed = PictureSettings { radius: KernelRadius::Fixed(2), ..settings };
     let noise = |photons| rmse(&picture(&fixed, photons, 1), &picture(&fixed, photons, 2));
     let ratio = noise(5_000) / noise(80_000);
     assert!((3.4..4.6).contains(&ratio), "the noise of a fixed kernel falls as the root of 16: {ratio}");
@@ -178,7 +178,7 @@ fn a_mirror_shows_what_is_before_it() {
         quads = [[[-2, -2, -1], [2, -2, -1], [2, 2, -1], [-2, 2, -1]]]
         "#,
     );
-    let settings = settings(16, Kernel::Silverman, RadiusChoice::Variable);
+    let settings = settings(16, Kernel::Silverman, KernelRadius::Variable);
     let trace = TraceSettings { photons: 2_000, ..TraceSettings::default() };
     let mut renderer = Renderer::new(&gl, &scene, &settings, &trace, &mut |_| ()).unwrap();
     let (layers, _) = renderer.picture(&settings).unwrap();

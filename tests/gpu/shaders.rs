@@ -219,7 +219,7 @@ fn every_method_runs_on_the_commands_of_3_3_core_alone() {
 fn every_stage_of_a_picture_runs_on_the_commands_of_3_3_core_alone() {
     use varikernel::photon::TraceSettings;
     use varikernel::render::Renderer;
-    use varikernel::settings::{DirectLight, Estimate, FirstBounce, Kernel, PictureSettings, RadiusChoice};
+    use varikernel::settings::{DirectLight, Estimate, FirstBounce, Kernel, KernelRadius, PictureSettings};
 
     let scene = varikernel::scene::Scene::shipped("cornell-glass").unwrap();
     let trace = TraceSettings { photons: 500, ..TraceSettings::default() };
@@ -232,7 +232,7 @@ fn every_stage_of_a_picture_runs_on_the_commands_of_3_3_core_alone() {
         let maps = PictureSettings { first_bounce: FirstBounce::Maps, direct, ..usual };
         let mut renderer = Renderer::new(&gl, &scene, &maps, &trace, &mut |_| ()).unwrap();
         let mut all: Vec<_> = Kernel::ALL.map(|kernel| PictureSettings { kernel, ..usual }).to_vec();
-        all.push(PictureSettings { radius: RadiusChoice::Fixed(3), ..usual });
+        all.push(PictureSettings { radius: KernelRadius::Fixed(3), ..usual });
         all.push(PictureSettings { estimate: Estimate::Gather { count_correction: true }, ..usual });
         for settings in all {
             let (_, account) = renderer.picture(&settings).unwrap();

@@ -3,14 +3,14 @@
 use glam::UVec2;
 use varikernel::render::{Layers, Renderer};
 use varikernel::scene::Scene;
-use varikernel::settings::{DirectLight, Kernel, PictureSettings, RadiusChoice};
+use varikernel::settings::{DirectLight, Kernel, KernelRadius, PictureSettings};
 use varikernel::{Gl, Image};
 
 use crate::stage::{scene, settings};
 use crate::support::egl;
 
 fn picture(gl: &Gl, scene: &Scene, size: u32, direct: DirectLight, light_samples: u32) -> Layers {
-    let usual = settings(size, Kernel::Box, RadiusChoice::Fixed(1));
+    let usual = settings(size, Kernel::Box, KernelRadius::Fixed(1));
     let settings = PictureSettings { direct, light_samples, ..usual };
     Renderer::with_photons(gl, scene, &settings, &[]).unwrap().picture(&settings).unwrap().0
 }

@@ -5,7 +5,7 @@ use varikernel::Image;
 use varikernel::reference::{self, photon_density};
 use varikernel::render::Renderer;
 use varikernel::scene::Scene;
-use varikernel::settings::{Estimate, Kernel, PictureSettings, RadiusChoice};
+use varikernel::settings::{Estimate, Kernel, KernelRadius, PictureSettings};
 
 use crate::stage::{irradiance, photon_at, relative_difference, settings, shown, traced, wall};
 use crate::support::egl;
@@ -15,7 +15,7 @@ fn the_splat_of_one_photon_is_its_kernel() {
     let gl = egl();
     let scene = wall();
     for kernel in Kernel::ALL {
-        let settings = settings(32, kernel, RadiusChoice::Fixed(5));
+        let settings = settings(32, kernel, KernelRadius::Fixed(5));
         let view = scene.view(settings.size);
         let photon = photon_at(&scene, &view, 15, 17, 3.0).unwrap();
         let (found, _) = irradiance(&gl, &scene, &settings, &[photon]);
@@ -45,7 +45,7 @@ fn splat_and_gather_are_those_of_the_definition() {
     let photons = traced(&scene, 500, 7);
     for kernel in [Kernel::Cone, Kernel::Silverman, Kernel::Gaussian] {
         let settings =
-            PictureSettings { min_photons: 8, max_radius: 9, ..settings(32, kernel, RadiusChoice::Variable) };
+            PictureSettings { min_photons: 8, max_radius: 9, ..settings(32, kernel, KernelRadius::Variable) };
         let mut renderer = Renderer::with_photons(&gl, &scene, &settings, &photons).unwrap();
         let shown = shown(&renderer);
         let (layers, _) = renderer.picture(&settings).unwrap();
@@ -83,9 +83,9 @@ fn energy_is_kept_on_each_scene_at_edges_and_in_corners() {
     for name in Scene::shipped_names() {
         let scene = Scene::shipped(name).unwrap();
         for (kernel, radius) in [
-            (Kernel::Silverman, RadiusChoice::Variable),
-            (Kernel::Box, RadiusChoice::Fixed(7)),
-            (Kernel::Gaussian, RadiusChoice::Fixed(1)),
+            (Kernel::Silverman, KernelRadius::Variable),
+            (Kernel::Box, KernelRadius::Fixed(7)),
+            (Kernel::Gaussian, KernelRadius::Fixed(1)),
         ] {
             let settings = settings(48, kernel, radius);
             let view = scene.view(settings.size);
@@ -142,7 +142,7 @@ fn known_densities_give_the_known_estimate_and_bias() {
     // Pixels of 1/32; a disc with the area of 17 x 17 of them.
     let (area, disc) = (1.0 / 1024.0, 17.0 / std::f32::consts::PI.sqrt());
     for estimate in [Estimate::Splat, Estimate::Gather { count_correction: false }] {
-        let settings = PictureSettings { estimate, ..settings(64, Kernel::Box, RadiusChoice::Fixed(8)) };
+        let settings = PictureSettings { estimate, ..settings(64, Kernel::Box, KernelRadius::Fixed(8)) };
         let near = |found: f32, expected: f32, within: f32, what: &str| {
             assert!((found / expected - 1.0).abs() < within, "{estimate:?}, {what}: {found} for {expected}");
         };
@@ -177,7 +177,7 @@ fn light_stays_on_its_side_of_a_wall_up_to_a_measured_share() {
     // A floor with a thin wall across it; the same surface on both sides, so that only the kernel's width
     // limits the leak.
     let settings =
-        PictureSettings { min_photons: 25, ..settings(64, Kernel::Silverman, RadiusChoice::Variable) };
+        PictureSettings { min_photons: 25, ..settings(64, Kernel::Silverman, KernelRadius::Variable) };
     let leak = |settings: &PictureSettings| {
         let found = painted(&gl, settings, |x, _| if x < 32.0 { 1.0 } else { 0.0 });
         let sum = |columns: std::ops::Range<u32>| -> f32 {
@@ -187,6 +187,6 @@ fn light_stays_on_its_side_of_a_wall_up_to_a_measured_share() {
     };
     let share = leak(&settings);
     assert!(share < 0.015, "{share}");
-    let planted = leak(&PictureSettings { radius: RadiusChoice::Fixed(16), ..settings });
+    let planted = leak(&PictureSettings { radius: KernelRadius::Fixed(16), ..settings });
     assert!(planted > 3.0 * share, "{planted}");
 }

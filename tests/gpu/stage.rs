@@ -5,7 +5,7 @@ use varikernel::photon::{Emission, PhotonPoint, TraceSettings, trace};
 use varikernel::reference::Shown;
 use varikernel::render::Renderer;
 use varikernel::scene::Scene;
-use varikernel::settings::{Kernel, PictureSettings, RadiusChoice};
+use varikernel::settings::{Kernel, KernelRadius, PictureSettings};
 use varikernel::view::View;
 use varikernel::{Gl, Image};
 
@@ -38,7 +38,7 @@ pub(crate) fn scene(text: &str) -> Scene {
     Scene::load(&file).unwrap_or_else(|error| panic!("{error}"))
 }
 
-pub(crate) fn settings(side: u32, kernel: Kernel, radius: RadiusChoice) -> PictureSettings {
+pub(crate) fn settings(side: u32, kernel: Kernel, radius: KernelRadius) -> PictureSettings {
     PictureSettings {
         size: UVec2::splat(side),
         kernel,

@@ -4,7 +4,7 @@ use glam::{UVec2, Vec3};
 use varikernel::Image;
 use varikernel::render::Renderer;
 use varikernel::scene::{Scattering, Scene};
-use varikernel::settings::{Kernel, RadiusChoice};
+use varikernel::settings::{Kernel, KernelRadius};
 use varikernel::view::View;
 
 use crate::stage::settings;
@@ -45,7 +45,7 @@ fn surfaces_are_where_rays_meet_them() {
     let gl = egl();
     for name in Scene::shipped_names() {
         let scene = Scene::shipped(name).unwrap();
-        let settings = settings(96, Kernel::Box, RadiusChoice::Fixed(1));
+        let settings = settings(96, Kernel::Box, KernelRadius::Fixed(1));
         let renderer = Renderer::with_photons(&gl, &scene, &settings, &[]).unwrap();
         let surfaces = renderer.surfaces();
         let (position, normal) = (surfaces.read_position().unwrap(), surfaces.read_normal().unwrap());
@@ -100,7 +100,7 @@ fn box_on_ground(scale: f64, more: &str) -> Scene {
 /// How many pixels show a surface, after a check that each shows the one that its ray meets, at its place.
 #[track_caller]
 fn seen(gl: &varikernel::Gl, scene: &Scene, scale: f64) -> usize {
-    let settings = settings(96, Kernel::Box, RadiusChoice::Fixed(1));
+    let settings = settings(96, Kernel::Box, KernelRadius::Fixed(1));
     let renderer = Renderer::with_photons(gl, scene, &settings, &[]).unwrap();
     let surfaces = renderer.surfaces();
     let (position, normal) = (surfaces.read_position().unwrap(), surfaces.read_normal().unwrap());

@@ -23,7 +23,7 @@ const ROOMS: &[(&str, &[&str])] = &[
     ("radius", &["gl", "maps"]),
     ("light", &["gl", "maps", "radius"]),
     ("measure", &["gl", "maps", "radius", "view"]),
-    ("render", &["gl", "light", "maps", "photon", "radius", "reference", "scene", "view"]),
+    ("render", &["gl", "light", "maps", "photon", "reference", "scene", "view"]),
     ("capi", &["gl", "light", "maps", "photon", "radius", "view"]),
 ];
 

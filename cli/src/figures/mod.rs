@@ -14,7 +14,7 @@ use varikernel::image::{
 use varikernel::photon::TraceSettings;
 use varikernel::render::{Layers, Progress, Renderer};
 use varikernel::scene::Scene;
-use varikernel::settings::{MAX_PICTURE_RADIUS, PictureSettings, RadiusChoice};
+use varikernel::settings::{KernelRadius, MAX_PICTURE_RADIUS, PictureSettings};
 use varikernel::{Gl, Image};
 use varikernel_lab::{LightError, PictureError, ReferenceHalves};
 
@@ -63,7 +63,7 @@ pub(crate) struct Args {
 #[derive(Serialize)]
 struct Figure {
     name: &'static str,
-    radius: RadiusChoice,
+    radius: KernelRadius,
     error: PictureError,
     #[serde(flatten)]
     regions: RegionErrors,
@@ -140,16 +140,16 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     let too_large = (best * TOO_LARGE).min(MAX_PICTURE_RADIUS);
     let (mut figures, mut tiles) = (Vec::new(), Vec::new());
     for (name, file, radius) in [
-        ("Figure 1.2, well chosen", "figure_1_2.png", RadiusChoice::Fixed(best)),
-        ("Figure 1.3, too large", "figure_1_3.png", RadiusChoice::Fixed(too_large)),
-        ("Figure 1.4, too small", "figure_1_4.png", RadiusChoice::Fixed(1)),
-        ("Variable", "variable.png", RadiusChoice::Variable),
+        ("Figure 1.2, well chosen", "figure_1_2.png", KernelRadius::Fixed(best)),
+        ("Figure 1.3, too large", "figure_1_3.png", KernelRadius::Fixed(too_large)),
+        ("Figure 1.4, too small", "figure_1_4.png", KernelRadius::Fixed(1)),
+        ("Variable", "variable.png", KernelRadius::Variable),
     ] {
         let (layers, figure) = studio.draw(name, radius)?;
         let picture = tone_map.apply(&layers.beauty);
         write_colours(&args.output.join(file), &picture)?;
         tiles.push(Tile { picture, caption: caption(&figure, settings.min_photons) });
-        if radius == RadiusChoice::Variable {
+        if radius == KernelRadius::Variable {
             let colours = Picture { range: Some(1..=settings.max_radius), ..Picture::default() };
             let caption = vec![
                 "Its radius map".to_owned(),
@@ -209,7 +209,7 @@ struct Studio {
 }
 
 impl Studio {
-    fn draw(&mut self, name: &'static str, radius: RadiusChoice) -> Result<(Layers, Figure)> {
+    fn draw(&mut self, name: &'static str, radius: KernelRadius) -> Result<(Layers, Figure)> {
         let (layers, account) = self.renderer.picture(&PictureSettings { radius, ..self.settings })?;
         let error = PictureError::of_light_and_sight(
             [&layers.indirect, &self.indirect],
@@ -224,7 +224,7 @@ impl Studio {
         let mut fixed: Vec<FixedRadius> = Vec::new();
         for radius in RADII {
             bar.show(Progress { stage: "fixed radii", done: f64::from(radius) / 32.0 });
-            let Figure { error, regions, .. } = self.draw("", RadiusChoice::Fixed(radius))?.1;
+            let Figure { error, regions, .. } = self.draw("", KernelRadius::Fixed(radius))?.1;
             let is_past = fixed.last().is_some_and(|before| {
                 let walls = regions.walls.zip(before.regions.walls);
                 let all_worse =
@@ -246,8 +246,8 @@ impl Studio {
 
 fn caption(figure: &Figure, min_photons: u32) -> Vec<String> {
     let width = match figure.radius {
-        RadiusChoice::Fixed(radius) => format!("radius {radius}"),
-        RadiusChoice::Variable => format!("n = {min_photons}"),
+        KernelRadius::Fixed(radius) => format!("radius {radius}"),
+        KernelRadius::Variable => format!("n = {min_photons}"),
     };
     let rmse =
         |error: Option<LightError>| error.map_or_else(|| "-".to_owned(), |of| format!("{:.5}", of.rmse));

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Result, anyhow, bail};
 use varikernel::context::DeviceChoice;
-use varikernel::gl::{self, DeviceInfo};
+use varikernel::gl::DeviceInfo;
 use varikernel::image::Difference;
 use varikernel::image::{
     self, Attribute, Format, Picture, ReadOptions, read_counts, write_counts, write_picture,
@@ -99,12 +99,12 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     tracing::info!(renderer = gl.info().renderer, "opened");
     check_fits(args, &counts, gl.info())?;
 
-    let decision = planned(args, settings, &counts);
-    let settings = decision.as_ref().map_or(settings, |decision| decision.settings);
     let bounds = match settings.storage {
         Storage::U16 => CountBounds::of_boxes(&counts, settings.search),
         _ => CountBounds::of(&counts, settings.search),
     };
+    let decision = planned(args, settings, &counts, bounds);
+    let settings = decision.as_ref().map_or(settings, |decision| decision.settings);
     let density = DensityMap::upload(&gl, &counts, bounds)?;
     let mut pipeline =
         RadiusPipeline::new(&gl, counts.size(), density.format(), settings).map_err(explain)?;
@@ -112,8 +112,7 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     let mask = args.mask.as_ref().map(|path| read_mask(path, &counts)).transpose()?;
     let mask_on_gpu = mask.as_ref().map(|mask| Mask::upload(&gl, mask)).transpose()?;
     let frame = Frame { mask: mask_on_gpu.as_ref(), ..Frame::new(&density) };
-    let ((), build) = gl::time(&gl, || pipeline.build(&density))?;
-    let (radii, search) = gl::time(&gl, || pipeline.search_frame(&frame))?;
+    let (radii, [build, search]) = pipeline.update_timed(&frame)?;
     let radii = reference::Radii {
         radius: radii.read()?,
         limited: radii.read_limited()?.unwrap_or_else(|| unreachable!("the settings ask for the mask")),
@@ -174,11 +173,10 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
 }
 
 /// What the planner decides, where nothing else is asked for.
-fn planned(args: &Args, settings: Settings, counts: &Image<u32>) -> Option<Decision> {
-    args.method.is_free().then(|| {
-        let bounds = CountBounds::of(counts, settings.search);
-        planner::decide(&settings, counts.size(), Some(&Census::of(counts)), bounds)
-    })
+fn planned(args: &Args, settings: Settings, counts: &Image<u32>, bounds: CountBounds) -> Option<Decision> {
+    args.method
+        .is_free()
+        .then(|| planner::decide(&settings, counts.size(), Some(&Census::of(counts)), bounds))
 }
 
 /// A mask of the map's size, 1 where a radius is needed.

@@ -12,7 +12,7 @@ use std::time::Instant;
 use anyhow::{Result, bail};
 use varikernel::image::{Format, check_writable};
 use varikernel::render::{Progress, Renderer};
-use varikernel::settings::{DirectLight, Estimate, FirstBounce, PictureSettings, RadiusChoice};
+use varikernel::settings::{DirectLight, Estimate, FirstBounce, KernelRadius, PictureSettings};
 
 pub(super) use bar::Bar;
 pub(super) use source::Source;
@@ -42,7 +42,7 @@ pub(crate) struct Args {
     /// Width of the kernels: `variable`, or `fixed:PIXELS` for the same everywhere.
     #[arg(long, default_value = "variable", value_parser = parse_radius, value_name = "RADIUS")]
     #[arg(help_heading = "Kernels")]
-    radius: RadiusChoice,
+    radius: KernelRadius,
 
     /// Let each pixel gather the photons around it, instead of drawing each photon over the pixels around it.
     #[arg(long)]
@@ -150,12 +150,12 @@ fn check_output(path: &Path) -> Result<()> {
 }
 
 /// `variable` or `fixed:3`.
-pub(super) fn parse_radius(text: &str) -> Result<RadiusChoice> {
+pub(super) fn parse_radius(text: &str) -> Result<KernelRadius> {
     if text == "variable" {
-        return Ok(RadiusChoice::Variable);
+        return Ok(KernelRadius::Variable);
     }
     match text.strip_prefix("fixed:").and_then(|pixels| pixels.parse().ok()) {
-        Some(pixels) => Ok(RadiusChoice::Fixed(pixels)),
+        Some(pixels) => Ok(KernelRadius::Fixed(pixels)),
         None => bail!("give `variable`, or `fixed:` and a whole number of pixels"),
     }
 }

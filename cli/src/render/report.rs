@@ -7,7 +7,7 @@ use serde::Serialize;
 use varikernel::gl::DeviceInfo;
 use varikernel::photon::TraceSettings;
 use varikernel::render::Account;
-use varikernel::settings::{PictureSettings, RadiusChoice};
+use varikernel::settings::{KernelRadius, PictureSettings};
 
 use crate::output;
 
@@ -42,7 +42,7 @@ pub(super) fn print(report: &Report<'_>) -> Result<()> {
         ),
     ];
     // With a fixed radius nothing is searched.
-    if report.settings.radius == RadiusChoice::Variable {
+    if report.settings.radius == KernelRadius::Variable {
         facts
             .push(("limited", format!("{:.3} % of the pixels found too few photons", 100.0 * limited_share)));
     }

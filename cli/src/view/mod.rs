@@ -28,7 +28,7 @@ use anyhow::{Context as _, Result, bail};
 use varikernel::context::window;
 use varikernel::glam::UVec2;
 use varikernel::image::{Format, check_writable};
-use varikernel::settings::{Edges, Kernel, MAX_RADIUS_LIMIT, Method, Order, RadiusChoice};
+use varikernel::settings::{Edges, Kernel, KernelRadius, MAX_RADIUS_LIMIT, Method, Order};
 
 use super::numbers::{fraction, whole};
 use super::photons::parse_count;
@@ -89,7 +89,7 @@ pub(crate) struct Args {
     /// Width of the kernels: `variable`, or `fixed:PIXELS` for the same everywhere.
     #[arg(long, default_value = "variable", value_parser = parse_radius, value_name = "RADIUS")]
     #[arg(help_heading = "Kernels")]
-    radius: RadiusChoice,
+    radius: KernelRadius,
 
     /// Falloff of a kernel from its middle to its edge.
     #[arg(long, value_enum, default_value_t = Kernel::Silverman)]
@@ -205,8 +205,8 @@ fn choices(args: &Args) -> Result<Choices> {
     }
     let (n, max) = if Format::of(&args.source).is_ok() { (25, 32) } else { (400, 64) };
     let (variable, fixed_radius) = match args.radius {
-        RadiusChoice::Variable => (true, 2),
-        RadiusChoice::Fixed(radius) => (false, radius),
+        KernelRadius::Variable => (true, 2),
+        KernelRadius::Fixed(radius) => (false, radius),
     };
     Ok(Choices {
         source: args.source.to_string_lossy().into_owned(),

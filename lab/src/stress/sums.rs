@@ -8,11 +8,11 @@ use crate::thesis::listings::misjudged_by_float_ratio;
 use varikernel::error::{Error, Result};
 use varikernel::gl::Gl;
 use varikernel::light::{DensityStage, SplatStage};
-use varikernel::maps::{ChosenRadius, PhotonPoints, SurfaceMaps};
+use varikernel::maps::{KernelRadii, PhotonPoints, SurfaceMaps};
 use varikernel::photon::PhotonPoint;
 use varikernel::render::draw_surfaces;
 use varikernel::scene::Scene;
-use varikernel::settings::{IrradianceSettings, Kernel, RadiusChoice};
+use varikernel::settings::{IrradianceSettings, Kernel, KernelRadius};
 
 /// The relative error that a pixel's sum of kernels stays below, as `splat` promises.
 const SPLAT_ERROR: f64 = 1.0 / 512.0;
@@ -103,12 +103,12 @@ pub(super) fn splat_rows(gl: &Gl, extent: Extent) -> Result<Vec<Row>> {
     let (surfaces, photon) = stand(gl)?;
     let settings = IrradianceSettings {
         kernel: Kernel::Box,
-        radius: RadiusChoice::Fixed(1),
+        radius: KernelRadius::Fixed(1),
         ..IrradianceSettings::default()
     };
     let mut stage = SplatStage::new(gl, surfaces.size(), &settings)?;
     let mut sum = |points: &PhotonPoints| -> Result<f64> {
-        let map = stage.splat(&surfaces, points, ChosenRadius::Fixed(1))?.read()?;
+        let map = stage.splat(&surfaces, points, KernelRadii::Fixed(1))?.read()?;
         Ok(f64::from(map.at(MIDDLE.x, MIDDLE.y)[0]))
     };
     let mut one = PhotonPoints::new(gl);

@@ -2,7 +2,7 @@
 
 use super::{Failure, Status, answer, check_place, check_size, flag, out_of_range};
 use crate::capi::settings::{read_edges, write_edges};
-use crate::settings::{IrradianceSettings, Kernel, RadiusChoice, Search, Settings};
+use crate::settings::{IrradianceSettings, Kernel, KernelRadius, Search, Settings};
 
 /// kernel: the same everywhere on the disc.
 pub const VARIKERNEL_KERNEL_BOX: u32 = 0;
@@ -68,8 +68,8 @@ pub unsafe extern "C" fn varikernel_irradiance_settings_default(
         let plain = PlainIrradianceSettings {
             struct_size: size,
             fixed_radius: match usual.radius {
-                RadiusChoice::Variable => 0,
-                RadiusChoice::Fixed(radius) => radius,
+                KernelRadius::Variable => 0,
+                KernelRadius::Fixed(radius) => radius,
             },
             min_photons,
             max_radius,
@@ -103,8 +103,8 @@ impl PlainIrradianceSettings {
         };
         let settings = IrradianceSettings {
             radius: match self.fixed_radius {
-                0 => RadiusChoice::Variable,
-                radius => RadiusChoice::Fixed(radius),
+                0 => KernelRadius::Variable,
+                radius => KernelRadius::Fixed(radius),
             },
             radii: Settings { search, ..usual.radii },
             kernel: kernel

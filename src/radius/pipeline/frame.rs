@@ -2,9 +2,12 @@
 
 use super::{Built, Pixels, RadiusPipeline};
 use crate::error::{Error, Result};
-use crate::gl::StateGuard;
+use crate::gl::{self, Gl, Sample, StateGuard};
 use crate::maps::exactness::{self, CountBounds};
 use crate::maps::{Changed, DensityMap, Frame, Mask, RadiusMap, Rectangle, describe};
+
+/// Half of a frame, to be run once.
+type Half<'a> = &'a mut dyn FnMut() -> Result<()>;
 
 impl RadiusPipeline {
     /// Builds the structure and searches: all that a frame needs when nothing is known of the one before.
@@ -29,14 +32,40 @@ impl RadiusPipeline {
     /// As [`render`](Self::render); [`Error::Mismatch`] also if the mask is not expected, or of another size;
     /// [`Error::Setting`] for photons to be added without a summed-area table.
     pub fn update(&mut self, frame: &Frame<'_>) -> Result<&RadiusMap> {
+        self.update_by(frame, &mut |_, half| half())
+    }
+
+    /// As [`update`](Self::update), with the times of its halves: the build and the search. Waits for the
+    /// GPU; [`StageTimes`](crate::gl::StageTimes) times the passes without waiting.
+    ///
+    /// # Errors
+    /// As [`update`](Self::update); [`Error::QueryRunning`] while a GL_TIME_ELAPSED query of the host runs.
+    pub fn update_timed(&mut self, frame: &Frame<'_>) -> Result<(&RadiusMap, [Sample; 2])> {
+        let mut samples = Vec::new();
+        self.update_by(frame, &mut |gl, half| {
+            let ((), sample) = gl::time(gl, half)?;
+            samples.push(sample);
+            Ok(())
+        })?;
+        let [build, search] = samples[..] else { unreachable!("a frame has two halves") };
+        Ok((self.search.radii(), [build, search]))
+    }
+
+    /// A frame whose halves are run by `run`.
+    fn update_by(
+        &mut self,
+        frame: &Frame<'_>,
+        run: &mut dyn FnMut(&Gl, Half<'_>) -> Result<()>,
+    ) -> Result<&RadiusMap> {
         self.check_mask(frame)?;
         let plans = self.planner.is_some() && frame.changed != Changed::Nothing;
         if plans {
             self.check(frame)?;
             self.plan_frame(frame)?;
         }
-        self.build_frame(frame)?;
-        self.search_frame(frame)?;
+        let gl = self.gl.clone();
+        run(&gl, &mut || self.build_frame(frame))?;
+        run(&gl, &mut || self.search_frame(frame).map(drop))?;
         if plans && let Some(planner) = &mut self.planner {
             planner.count(&self.tables, frame.density)?;
         }

@@ -7,7 +7,7 @@ use crate::image::Image;
 use crate::light::IrradiancePipeline;
 use crate::reference::{Inside, Table};
 use crate::scene::Scene;
-use crate::settings::RadiusChoice;
+use crate::settings::KernelRadius;
 use crate::view::View;
 
 /// What a pixel holds, and why its radius is what it is.
@@ -62,9 +62,9 @@ impl Inspector {
         };
         let (table, radii) = self.maps.insert(maps);
         let radius = match (pipeline.settings().radius, radii) {
-            (RadiusChoice::Fixed(radius), _) => radius,
-            (RadiusChoice::Variable, Some(radii)) => radii.at(pixel.x, pixel.y),
-            (RadiusChoice::Variable, None) => pipeline.settings().radii.search.max_radius,
+            (KernelRadius::Fixed(radius), _) => radius,
+            (KernelRadius::Variable, Some(radii)) => radii.at(pixel.x, pixel.y),
+            (KernelRadius::Variable, None) => pipeline.settings().radii.search.max_radius,
         };
         let within = |radius| table.count(Inside::of_box(size, pixel.x, pixel.y, radius));
         let hit = scene.cast(&view.ray(pixel.x, pixel.y));

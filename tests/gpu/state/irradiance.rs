@@ -1,9 +1,9 @@
 //! Every public call around photons and a host's g-buffer, those that fail included.
 
 use glam::UVec2;
-use varikernel::settings::{IrradianceSettings, RadiusChoice};
+use varikernel::settings::{IrradianceSettings, KernelRadius};
 use varikernel::{
-    ChosenRadius, DensityStage, GatherStage, HostDepth, HostSurfaces, IrradiancePipeline, PhotonPoints,
+    DensityStage, GatherStage, HostDepth, HostSurfaces, IrradiancePipeline, KernelRadii, PhotonPoints,
     PositionMaker, SplatStage, SurfaceMaps,
 };
 
@@ -20,7 +20,7 @@ pub(super) fn all(watch: &Watch<'_>) {
     surfaces.set_view(view).unwrap();
     photons.replace(&HostPicture::photons(500)).unwrap();
     watch.unchanged("PhotonPoints::replace");
-    for radius in [RadiusChoice::Variable, RadiusChoice::Fixed(2)] {
+    for radius in [KernelRadius::Variable, KernelRadius::Fixed(2)] {
         let settings = IrradianceSettings { radius, ..IrradianceSettings::default() };
         let mut pipeline = IrradiancePipeline::new(gl, SIZE, settings).unwrap();
         watch.unchanged("IrradiancePipeline::new");
@@ -62,8 +62,8 @@ pub(super) fn all(watch: &Watch<'_>) {
 
 fn stages(watch: &Watch<'_>, surfaces: &SurfaceMaps, photons: &PhotonPoints) {
     let gl = &watch.gl;
-    let radius = ChosenRadius::Fixed(2);
-    let settings = IrradianceSettings { radius: RadiusChoice::Fixed(2), ..IrradianceSettings::default() };
+    let radius = KernelRadii::Fixed(2);
+    let settings = IrradianceSettings { radius: KernelRadius::Fixed(2), ..IrradianceSettings::default() };
     let mut density = DensityStage::new(gl, SIZE).unwrap();
     watch.unchanged("DensityStage::new");
     density.add(surfaces, photons).unwrap();

@@ -6,7 +6,7 @@ use glam::UVec2;
 use varikernel::photon::{Emission, TraceSettings};
 use varikernel::render::{Live, LiveSettings, Renderer, first_hits};
 use varikernel::scene::Scene;
-use varikernel::settings::{DirectLight, Estimate, PictureSettings, RadiusChoice};
+use varikernel::settings::{DirectLight, Estimate, KernelRadius, PictureSettings};
 use varikernel::{Gl, Image};
 
 use super::Watch;
@@ -31,7 +31,7 @@ pub(super) fn all(watch: &Watch<'_>) {
         usual,
         PictureSettings {
             estimate: Estimate::Gather { count_correction: false },
-            radius: RadiusChoice::Fixed(2),
+            radius: KernelRadius::Fixed(2),
             direct: DirectLight::ShadowMap,
             ..usual
         },
@@ -73,7 +73,7 @@ fn stages(watch: &Watch<'_>, scene: &Scene, settings: &PictureSettings) {
     watch.unchanged("Renderer::count");
     renderer.search(settings).unwrap();
     watch.unchanged("Renderer::search");
-    for radius in [RadiusChoice::Variable, RadiusChoice::Fixed(2)] {
+    for radius in [KernelRadius::Variable, KernelRadius::Fixed(2)] {
         for estimate in [Estimate::Splat, Estimate::Gather { count_correction: false }] {
             let settings = PictureSettings { radius, estimate, ..*settings };
             let irradiance = renderer.spread(&settings).unwrap().read().unwrap();
@@ -100,11 +100,11 @@ fn live(watch: &Watch<'_>, scene: &Arc<Scene>) {
     watch.unchanged("Live::read");
     let mut moved = settings;
     moved.camera.position.x += 1.0;
-    moved.irradiance.radius = RadiusChoice::Fixed(2);
+    moved.irradiance.radius = KernelRadius::Fixed(2);
     live.change(moved).unwrap();
     live.step().unwrap();
     watch.unchanged("Live::change");
-    moved.irradiance.radius = RadiusChoice::Fixed(0);
+    moved.irradiance.radius = KernelRadius::Fixed(0);
     live.change(moved).unwrap_err();
     watch.unchanged("Live::change that fails");
 }

@@ -10,7 +10,7 @@ use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
 use varikernel::image::write_atomically;
 use varikernel::settings::{
-    Edges, Estimate, Exactness, IrradianceSettings, Kernel, Laboratory, Method, Order, RadiusChoice, Search,
+    Edges, Estimate, Exactness, IrradianceSettings, Kernel, KernelRadius, Laboratory, Method, Order, Search,
     Settings,
 };
 use varikernel::view::Camera;
@@ -107,7 +107,7 @@ impl Choices {
     /// How photons become irradiance.
     pub(super) fn irradiance(&self) -> IrradianceSettings {
         let radius =
-            if self.variable { RadiusChoice::Variable } else { RadiusChoice::Fixed(self.fixed_radius) };
+            if self.variable { KernelRadius::Variable } else { KernelRadius::Fixed(self.fixed_radius) };
         IrradianceSettings { radius, radii: self.search(), kernel: self.kernel, estimate: Estimate::Splat }
     }
 

@@ -13,7 +13,7 @@ use varikernel::photon::{Emission, Ends, PhotonPoint, TraceSettings, trace_in_ba
 use varikernel::reference::{self, Shown};
 use varikernel::render::Renderer;
 use varikernel::scene::Scene;
-use varikernel::settings::{Estimate, PictureSettings, RadiusChoice, Search, Settings};
+use varikernel::settings::{Estimate, KernelRadius, PictureSettings, Search, Settings};
 
 /// The fixed radius with the least RMSE in the glass box (`varikernel figures`), in pixels.
 const BEST_FIXED: u32 = 2;
@@ -158,7 +158,7 @@ impl<'a> Rows<'a> {
     /// The picture whose light a row finds.
     fn settings_of(&self, work: Work) -> PictureSettings {
         match work {
-            Work::SplatFixed => PictureSettings { radius: RadiusChoice::Fixed(BEST_FIXED), ..self.settings },
+            Work::SplatFixed => PictureSettings { radius: KernelRadius::Fixed(BEST_FIXED), ..self.settings },
             Work::Gather => {
                 PictureSettings { estimate: Estimate::Gather { count_correction: false }, ..self.settings }
             }

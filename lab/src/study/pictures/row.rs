@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::picture::PictureError;
-use varikernel::settings::{Kernel, RadiusChoice};
+use varikernel::settings::{Kernel, KernelRadius};
 
 /// What decides the radii of a picture's kernels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -51,10 +51,10 @@ impl Width {
         matches!(self, Self::Variable { min_photons: 1 } | Self::Fixed { radius: 1 })
     }
 
-    pub(super) fn choice(self) -> RadiusChoice {
+    pub(super) fn choice(self) -> KernelRadius {
         match self {
-            Self::Variable { .. } => RadiusChoice::Variable,
-            Self::Fixed { radius } => RadiusChoice::Fixed(radius),
+            Self::Variable { .. } => KernelRadius::Variable,
+            Self::Fixed { radius } => KernelRadius::Fixed(radius),
         }
     }
 }

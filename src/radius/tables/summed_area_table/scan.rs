@@ -5,9 +5,8 @@
 //! a single entry has little to share with its neighbours:
 //!
 //! 1. the sums of each tile's 8 rows and 4 columns;
-//! 2. and 3. a scan of these along rows (what lies left of each tile), then along columns (what lies left of
-//! and below
-//!    it): sums of groups of elements, then runs of 8 with all groups and elements before them;
+//! 2. and 3. a scan of these along rows (what lies left of each tile), then along columns (what lies left
+//!    of and below it): sums of groups of elements, then runs of 8 with all groups and elements before them;
 //! 4. the entries of each tile, 8 layers of GL_RGBA32UI;
 //! 5. the entries in one plain texture, which every search reads.
 //!

@@ -4,8 +4,8 @@ use glam::UVec2;
 
 use crate::error::{Error, Result};
 use crate::gl::{Pass, ShaderSource};
-use crate::maps::{ChosenRadius, SurfaceMaps};
-use crate::settings::{IrradianceSettings, RadiusChoice};
+use crate::maps::{KernelRadii, SurfaceMaps};
+use crate::settings::{IrradianceSettings, KernelRadius};
 
 /// How far a kernel may reach, in pixels: a square of that is what llvmpipe's loops finish (65,535 turns).
 const MAX_REACH: u32 = 126;
@@ -14,8 +14,8 @@ const MAX_REACH: u32 = 126;
 pub(super) fn check(
     surfaces: &SurfaceMaps,
     size: UVec2,
-    radius: ChosenRadius<'_>,
-    expected: RadiusChoice,
+    radius: KernelRadii<'_>,
+    expected: KernelRadius,
 ) -> Result<()> {
     surfaces.check_size(size)?;
     let what = "radius of the kernels";
@@ -28,16 +28,16 @@ pub(super) fn check(
                 got: in_words(radius.is_fixed()),
             })
         }
-        ChosenRadius::Map(map) if map.size() != size => Err(Error::size(what, size, map.size())),
+        KernelRadii::Map(map) if map.size() != size => Err(Error::size(what, size, map.size())),
         _ => Ok(()),
     }
 }
 
-/// Gives a pass what `common/chosen_radius.glsl` reads.
-pub(super) fn read_radius<'a>(pass: Pass<'a>, radius: ChosenRadius<'a>) -> Pass<'a> {
+/// Gives a pass what `common/kernel_radius.glsl` reads.
+pub(super) fn read_radius<'a>(pass: Pass<'a>, radius: KernelRadii<'a>) -> Pass<'a> {
     match radius {
-        ChosenRadius::Map(map) => pass.read("radii", map.as_texture()),
-        ChosenRadius::Fixed(radius) => pass.set("fixed_radius", radius),
+        KernelRadii::Map(map) => pass.read("radii", map.as_texture()),
+        KernelRadii::Fixed(radius) => pass.set("fixed_radius", radius),
     }
 }
 
