@@ -8,7 +8,7 @@ use varikernel::Image;
 use varikernel::context::DeviceChoice;
 use varikernel::image::ToneMap;
 use varikernel::photon::TraceSettings;
-use varikernel::settings::{Kernel, PictureSettings};
+use varikernel::settings::{Kernel, MAX_PICTURE_RADIUS, PictureSettings};
 
 use crate::numbers::{fraction, whole, whole_checked_later};
 use crate::photons::parse_count;
@@ -43,9 +43,9 @@ pub(crate) struct Source {
     #[arg(value_parser = whole_checked_later(1..=u32::MAX))]
     pub(crate) min_photons: u32,
 
-    /// MR: the largest radius, in pixels, 1 to 96.
+    #[arg(help = format!("MR: the largest radius, in pixels, 1 to {MAX_PICTURE_RADIUS}"))]
     #[arg(short = 'r', long, default_value_t = 64, value_name = "MR", allow_negative_numbers = true)]
-    #[arg(value_parser = whole_checked_later(1..=96_u32))]
+    #[arg(value_parser = whole_checked_later(1..=MAX_PICTURE_RADIUS))]
     pub(crate) max_radius: u32,
 
     /// Falloff of a kernel from its middle to its edge.
