@@ -29,7 +29,7 @@
 /**
  * The version of this header, minor part.
  */
-#define VARIKERNEL_VERSION_MINOR 1
+#define VARIKERNEL_VERSION_MINOR 2
 
 /**
  * The version of this header, patch part.
@@ -73,8 +73,8 @@
 #define VARIKERNEL_ORDER_BINARY 2
 
 /**
- * order: chosen for each frame by the photons of the ones before, without waiting. Memory grows when an order is first
- * used.
+ * order: chosen for each frame by the photons of the ones before, without waiting. Memory grows when an
+ * order is first used.
  */
 #define VARIKERNEL_ORDER_ADAPTIVE 3
 
@@ -161,7 +161,7 @@ typedef enum varikernel_status {
      */
     VARIKERNEL_STATUS_TOO_LARGE = 6,
     /**
-     * A texture does not fit: another target, format or size; a mask that is missing or not expected.
+     * A texture does not fit: another target, format or size; a mask that is not expected.
      */
     VARIKERNEL_STATUS_MISMATCH = 7,
     /**
@@ -244,7 +244,7 @@ typedef struct varikernel_settings {
      */
     uint32_t limited_mask;
     /**
-     * 1 if each frame brings a mask of the pixels that need a radius, else 0. Default 0.
+     * 1 if frames may bring a mask of the pixels that need a radius, else 0. Default 0.
      */
     uint32_t masked;
 } varikernel_settings;
@@ -268,8 +268,8 @@ typedef struct varikernel_frame {
      */
     uint64_t photons_at_most;
     /**
-     * For a pipeline with masks: a GL_R8UI, GL_R16UI or GL_R32UI texture of the map's size, 0 where no radius is needed;
-     * such pixels get radius 0. Else 0. Default 0.
+     * For a pipeline with masks: a GL_R8UI, GL_R16UI or GL_R32UI texture of the map's size, 0 where no radius is
+     * needed; such pixels get radius 0. The name 0 where every pixel needs one. Default 0.
      */
     uint32_t mask_texture;
     /**
@@ -407,7 +407,7 @@ extern "C" {
 #endif // __cplusplus
 
 /**
- * The version of the library that was loaded, such as "0.1.0"; never null, valid for ever.
+ * The version of the library that was loaded, such as "0.2.0"; never null, valid for ever.
  */
 const char *varikernel_version(void);
 
@@ -479,29 +479,31 @@ enum varikernel_status varikernel_settings_default(struct varikernel_settings *s
 enum varikernel_status varikernel_frame_default(struct varikernel_frame *frame, uint32_t size);
 
 /**
- * Tells the memory that a pipeline takes, before it is made: bytes of textures and buffers, as large as their formats say.
+ * Tells the memory that a pipeline takes, before it is made: bytes of textures and buffers, as large as
+ * their formats say.
  *
- * `*at_creation` is what varikernel_pipeline_create and varikernel_pipeline_resize allocate; `*at_most` adds what is
- * allocated on demand, by VARIKERNEL_CHANGED_ADDED and, for VARIKERNEL_ORDER_ADAPTIVE, by each order; the pointer may be
- * null. `settings` may be null for the defaults.
+ * `*at_creation` is what varikernel_pipeline_create and varikernel_pipeline_resize allocate; `*at_most` adds
+ * what is allocated on demand, by VARIKERNEL_CHANGED_ADDED and, for VARIKERNEL_ORDER_ADAPTIVE, by each
+ * order; the pointer may be null. `settings` may be null for the defaults.
  *
  * Fails with SETTING, TOO_LARGE, INVALID_ARGUMENT, WRONG_THREAD, NO_CONTEXT, CONTEXT_LOST.
  */
 enum varikernel_status varikernel_pipeline_memory_required(const struct varikernel_context *context,
-                                                  uint32_t width,
-                                                  uint32_t height,
-                                                  const struct varikernel_settings *settings,
-                                                  uint64_t *at_creation,
-                                                  uint64_t *at_most);
+                                                           uint32_t width,
+                                                           uint32_t height,
+                                                           const struct varikernel_settings *settings,
+                                                           uint64_t *at_creation,
+                                                           uint64_t *at_most);
 
 /**
- * Allocates and compiles for density maps of `width` x `height` pixels in `density_format`: GL_R32F, as additive blending
- * of points fills it, GL_R32UI, GL_R16UI or GL_R8UI. Takes milliseconds to seconds; frames only draw.
+ * Allocates and compiles for density maps of `width` x `height` pixels in `density_format`: GL_R32F, as
+ * additive blending of points fills it, GL_R32UI, GL_R16UI or GL_R8UI. Takes milliseconds to seconds; frames
+ * only draw.
  *
  * `*pipeline` is the host's to destroy, before or after `context`. `settings` may be null for the defaults.
  *
- * Fails with SETTING, TOO_LARGE, MISMATCH for another format, SHADER, OUT_OF_MEMORY, OPEN_GL, INVALID_ARGUMENT,
- * WRONG_THREAD, NO_CONTEXT.
+ * Fails with SETTING, TOO_LARGE, MISMATCH for another format, SHADER, OUT_OF_MEMORY, OPEN_GL,
+ * INVALID_ARGUMENT, WRONG_THREAD, NO_CONTEXT.
  */
 enum varikernel_status varikernel_pipeline_create(const struct varikernel_context *context,
                                                   uint32_t width,
@@ -513,25 +515,27 @@ enum varikernel_status varikernel_pipeline_create(const struct varikernel_contex
 /**
  * Finds the radii of a frame: draws only, reads nothing back, waits for nothing.
  *
- * `*radius_texture` is a GL_TEXTURE_2D in GL_R32UI, a usampler2D in your shaders: radii from 1 to MR in pixels, 0 where
- * the mask says that none is needed. `*limited_texture` is one in GL_R8UI that is 1 where MR ended the search with too few
- * photons, or 0 if the settings ask for none; the pointer may be null. Both belong to the pipeline, are complete without
- * a sampler, and hold until its next frame. Take the names anew each frame: textures may take turns.
+ * `*radius_texture` is a GL_TEXTURE_2D in GL_R32UI, a usampler2D in your shaders: radii from 1 to MR in
+ * pixels, 0 where the mask says that none is needed. `*limited_texture` is one in GL_R8UI that is 1 where MR
+ * ended the search with too few photons, or 0 if the settings ask for none; the pointer may be null. Both
+ * belong to the pipeline, are complete without a sampler, and hold until its next frame. Take the names anew
+ * each frame: textures may take turns.
  *
- * Fails with MISMATCH, INEXACT, SETTING, OUT_OF_MEMORY, CONTEXT_LOST, OPEN_GL, INVALID_ARGUMENT, WRONG_THREAD,
- * NO_CONTEXT; the next frame may succeed.
+ * Fails with MISMATCH, INEXACT, SETTING, OUT_OF_MEMORY, CONTEXT_LOST, OPEN_GL, INVALID_ARGUMENT,
+ * WRONG_THREAD, NO_CONTEXT; the next frame may succeed.
  */
 enum varikernel_status varikernel_pipeline_render(struct varikernel_pipeline *pipeline,
-                                         const struct varikernel_frame *frame,
-                                         uint32_t *radius_texture,
-                                         uint32_t *limited_texture);
+                                                  const struct varikernel_frame *frame,
+                                                  uint32_t *radius_texture,
+                                                  uint32_t *limited_texture);
 
 /**
- * From now on for density maps of another size, with the same format and settings; the next frame starts from nothing.
- * Nothing is compiled. Textures of earlier frames are gone; the new ones are made before the old ones are freed.
+ * From now on for density maps of another size, with the same format and settings; the next frame starts
+ * from nothing. Nothing is compiled. Textures of earlier frames are gone; the new ones are made before the
+ * old ones are freed.
  *
- * Fails with SETTING, TOO_LARGE, OUT_OF_MEMORY, CONTEXT_LOST, OPEN_GL, INVALID_ARGUMENT, WRONG_THREAD, NO_CONTEXT, and the
- * pipeline then goes on at its old size.
+ * Fails with SETTING, TOO_LARGE, OUT_OF_MEMORY, CONTEXT_LOST, OPEN_GL, INVALID_ARGUMENT, WRONG_THREAD,
+ * NO_CONTEXT, and the pipeline then goes on at its old size.
  */
 enum varikernel_status varikernel_pipeline_resize(struct varikernel_pipeline *pipeline,
                                                   uint32_t width,
@@ -543,22 +547,6 @@ enum varikernel_status varikernel_pipeline_resize(struct varikernel_pipeline *pi
  * Fails with WRONG_THREAD and NO_CONTEXT, and frees nothing then; see varikernel_context_abandon.
  */
 enum varikernel_status varikernel_pipeline_destroy(struct varikernel_pipeline *pipeline);
-
-/**
- * Fills `settings` with the defaults. `size` is sizeof(varikernel_irradiance_settings).
- *
- * Fails with INVALID_ARGUMENT.
- */
-enum varikernel_status varikernel_irradiance_settings_default(struct varikernel_irradiance_settings *settings,
-                                                              uint32_t size);
-
-/**
- * Fills `frame` with the defaults, without textures, photons and camera. `size` is sizeof(varikernel_irradiance_frame).
- *
- * Fails with INVALID_ARGUMENT.
- */
-enum varikernel_status varikernel_irradiance_frame_default(struct varikernel_irradiance_frame *frame,
-                                                           uint32_t size);
 
 /**
  * Allocates and compiles for surfaces of `width` x `height` pixels. Takes milliseconds to seconds; frames only draw.
@@ -576,10 +564,10 @@ enum varikernel_status varikernel_irradiance_create(const struct varikernel_cont
 /**
  * Finds the light that photons bring to the surfaces: counts them, finds radii, draws a kernel for each.
  *
- * `*irradiance_texture` is a GL_TEXTURE_2D in GL_RGBA32F, a sampler2D in your shaders: power per area in scene units,
- * linear RGB; light that leaves a diffuse surface is albedo / pi of it. `*radius_texture` is as that of
- * varikernel_pipeline_render, or 0 for a fixed radius; the pointer may be null. Both belong to the handle and hold until its next
- * frame.
+ * `*irradiance_texture` is a GL_TEXTURE_2D in GL_RGBA32F, a sampler2D in your shaders: power per area in
+ * scene units, linear RGB; light that leaves a diffuse surface is albedo / pi of it. `*radius_texture` is as
+ * that of varikernel_pipeline_render, or 0 for a fixed radius; the pointer may be null. Both belong to the
+ * handle and hold until its next frame.
  *
  * Waits for the GPU only where a pixel may hold 2^24 photons. With from_depth, a shader is compiled when a depth texture is
  * first seen.

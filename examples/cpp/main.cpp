@@ -170,7 +170,8 @@ int main() {
 
     // Step 5: what it takes, before anything is allocated.
     uint64_t bytes = 0;
-    check(varikernel_pipeline_memory_required(context, 160, 120, &settings, &bytes, nullptr), "asking for the memory");
+    check(varikernel_pipeline_memory_required(context, 160, 120, &settings, &bytes, nullptr),
+          "asking for the memory");
     std::printf("160 x 120 takes %d KiB\n", static_cast<int>(bytes / 1024));
 
     // Step 6: a pipeline for a size; all is allocated and compiled here.
@@ -185,7 +186,8 @@ int main() {
     varikernel_frame empty;
     GLuint radius_texture = 0;
     check(varikernel_frame_default(&empty, sizeof empty), "a frame's defaults");
-    require(varikernel_pipeline_render(pipeline, &empty, &radius_texture, nullptr) == VARIKERNEL_STATUS_INVALID_ARGUMENT, "an error");
+    const varikernel_status refused = varikernel_pipeline_render(pipeline, &empty, &radius_texture, nullptr);
+    require(refused == VARIKERNEL_STATUS_INVALID_ARGUMENT, "an error");
     std::printf("a frame without a texture: %s\n", varikernel_last_error());
 
     // Step 10: resize with your window, and tear down while the context is current.

@@ -142,7 +142,8 @@ static void all_orders(uint32_t state_policy) {
         uint64_t at_creation = 0, at_most = 0;
         varikernel_pipeline *pipeline = NULL;
         settings.order = order;
-        EXPECT_OK(varikernel_pipeline_memory_required(context, SIDE, SIDE, &settings, &at_creation, &at_most));
+        EXPECT_OK(
+            varikernel_pipeline_memory_required(context, SIDE, SIDE, &settings, &at_creation, &at_most));
         EXPECT_TRUE(held(context) == before && at_creation < at_most);
         EXPECT_OK(varikernel_pipeline_create(context, SIDE, SIDE, GL_R8UI, &settings, &pipeline));
         EXPECT_TRUE(held(context) == before + at_creation);

@@ -39,9 +39,12 @@ static varikernel_status render(void) {
 }
 
 static void a_planted_difference_is_seen(void) {
-    EXPECT_TRUE(is_expected(varikernel_pipeline_render(NULL, NULL, NULL, NULL), VARIKERNEL_STATUS_INVALID_ARGUMENT, "null"));
-    EXPECT_TRUE(!is_expected(varikernel_pipeline_render(NULL, NULL, NULL, NULL), VARIKERNEL_STATUS_SETTING, "null"));
-    EXPECT_TRUE(!is_expected(varikernel_pipeline_render(NULL, NULL, NULL, NULL), VARIKERNEL_STATUS_INVALID_ARGUMENT, "zzz"));
+    EXPECT_TRUE(is_expected(varikernel_pipeline_render(NULL, NULL, NULL, NULL),
+                            VARIKERNEL_STATUS_INVALID_ARGUMENT, "null"));
+    EXPECT_TRUE(!is_expected(varikernel_pipeline_render(NULL, NULL, NULL, NULL),
+                             VARIKERNEL_STATUS_SETTING, "null"));
+    EXPECT_TRUE(!is_expected(varikernel_pipeline_render(NULL, NULL, NULL, NULL),
+                             VARIKERNEL_STATUS_INVALID_ARGUMENT, "zzz"));
 }
 
 static void versions(void) {
@@ -108,9 +111,12 @@ static void wrong_frames(void) {
     EXPECT_OK(varikernel_frame_default(&frame, sizeof frame));
     EXPECT(render(), VARIKERNEL_STATUS_INVALID_ARGUMENT, "density_texture is null");
     frame.density_texture = density;
-    EXPECT(varikernel_pipeline_render(NULL, &frame, &none, NULL), VARIKERNEL_STATUS_INVALID_ARGUMENT, "pipeline is null");
-    EXPECT(varikernel_pipeline_render(pipeline, NULL, &none, NULL), VARIKERNEL_STATUS_INVALID_ARGUMENT, "frame is null");
-    EXPECT(varikernel_pipeline_render(pipeline, &frame, NULL, NULL), VARIKERNEL_STATUS_INVALID_ARGUMENT, "radius_texture is null");
+    EXPECT(varikernel_pipeline_render(NULL, &frame, &none, NULL),
+           VARIKERNEL_STATUS_INVALID_ARGUMENT, "pipeline is null");
+    EXPECT(varikernel_pipeline_render(pipeline, NULL, &none, NULL),
+           VARIKERNEL_STATUS_INVALID_ARGUMENT, "frame is null");
+    EXPECT(varikernel_pipeline_render(pipeline, &frame, NULL, NULL),
+           VARIKERNEL_STATUS_INVALID_ARGUMENT, "radius_texture is null");
     EXPECT_OK(varikernel_pipeline_render(pipeline, &frame, &radii, &none));
     EXPECT_TRUE(none == 0 && glIsTexture(radii));
 
@@ -191,10 +197,13 @@ static void wrong_memory(void) {
            "context is null");
     EXPECT(varikernel_pipeline_memory_required(context, SIDE, SIDE, NULL, NULL, &bytes), VARIKERNEL_STATUS_INVALID_ARGUMENT,
            "at_creation is null");
-    EXPECT(varikernel_pipeline_memory_required(context, 1u << 20, SIDE, NULL, &bytes, NULL), VARIKERNEL_STATUS_TOO_LARGE, "1048576");
-    EXPECT(varikernel_pipeline_memory_required(context, 0, SIDE, NULL, &bytes, NULL), VARIKERNEL_STATUS_SETTING, "size");
+    EXPECT(varikernel_pipeline_memory_required(context, 1u << 20, SIDE, NULL, &bytes, NULL),
+           VARIKERNEL_STATUS_TOO_LARGE, "1048576");
+    EXPECT(varikernel_pipeline_memory_required(context, 0, SIDE, NULL, &bytes, NULL),
+           VARIKERNEL_STATUS_SETTING, "size");
     settings.max_radius = 0;
-    EXPECT(varikernel_pipeline_memory_required(context, SIDE, SIDE, &settings, &bytes, NULL), VARIKERNEL_STATUS_SETTING, "max_radius");
+    EXPECT(varikernel_pipeline_memory_required(context, SIDE, SIDE, &settings, &bytes, NULL),
+           VARIKERNEL_STATUS_SETTING, "max_radius");
     settings.max_radius = 32;
     EXPECT(varikernel_memory_held(NULL, &bytes), VARIKERNEL_STATUS_INVALID_ARGUMENT, "context is null");
     EXPECT(varikernel_memory_held(context, NULL), VARIKERNEL_STATUS_INVALID_ARGUMENT, "bytes is null");

@@ -15,8 +15,6 @@ use crate::numbers::{fraction, whole, whole_checked_later};
 use crate::photons::parse_count;
 use crate::synth::parse_size;
 
-static MAX_RADIUS_HELP: LazyLock<String> =
-    LazyLock::new(|| format!("MR: the largest radius, in pixels, 1 to {MAX_PICTURE_RADIUS}"));
 
 /// What is rendered, and with how many photons; `figures` takes the same.
 #[derive(Debug, clap::Args)]
@@ -53,8 +51,9 @@ pub(crate) struct Source {
     #[arg(help_heading = "Kernels")]
     pub(crate) min_photons: u32,
 
-    #[arg(short = 'r', long, help = MAX_RADIUS_HELP.as_str(), default_value_t = 64, value_name = "MR")]
-    #[arg(value_parser = whole_checked_later(1..=MAX_PICTURE_RADIUS), allow_negative_numbers = true)]
+    #[arg(help = format!("MR: the largest radius, in pixels, 1 to {MAX_PICTURE_RADIUS}"))]
+    #[arg(short = 'r', long, default_value_t = 64, value_name = "MR", allow_negative_numbers = true)]
+    #[arg(value_parser = whole_checked_later(1..=MAX_PICTURE_RADIUS))]
     #[arg(help_heading = "Kernels")]
     pub(crate) max_radius: u32,
 

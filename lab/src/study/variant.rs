@@ -14,7 +14,7 @@ const STORAGES: [Storage; 3] = [Storage::U32, Storage::F32, Storage::U16];
 const OTHER_STORAGES: [Storage; 3] = [Storage::F16, Storage::F32MinusMean, Storage::F32MinusWholeMean];
 /// MR of searches that end early.
 const SMALLER_RADII: [u32; 2] = [8, 16];
-const ORDERS: [Order; 3] = [Order::Forward, Order::Binary, Order::Bracketed];
+const ORDERS: [Order; 3] = Order::ALL;
 
 /// One way, and its name by parts.
 #[derive(Clone, Debug, PartialEq)]

@@ -174,8 +174,8 @@ fn planned(size: UVec2, settings: &Settings) -> Option<Decision> {
     }
 }
 
-/// The fragment shaders that a pipeline of these settings may compile in their order of the search, one after
-/// the other as its passes are; then those of a certificate, and of a census for [`Planning::EachFrame`].
+/// The fragment shaders that a pipeline of these settings may compile, in the order of its passes: those of a
+/// frame in their order of the search, of a certificate, and of a census for [`Planning::EachFrame`].
 #[must_use]
 pub fn shader_sources(density_format: TextureFormat, settings: &Settings) -> Vec<ShaderSource> {
     let mut sources = tables::build_sources(density_format, settings);

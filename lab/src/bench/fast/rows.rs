@@ -8,7 +8,7 @@ use varikernel::measure::Unit;
 use varikernel::settings::{Edges, Laboratory, Order, SatBuild, SatSamples, Search, Settings};
 
 /// All orders of a search in a table.
-pub(super) const ORDERS: [Order; 3] = [Order::Forward, Order::Binary, Order::Bracketed];
+pub(super) const ORDERS: [Order; 3] = Order::ALL;
 /// The thesis's.
 const THESIS_ORDERS: [Order; 2] = [Order::Forward, Order::Binary];
 /// The thesis's two builds.
