@@ -1,7 +1,6 @@
 //! The options that say what is rendered, and with how many photons.
 
 use std::path::PathBuf;
-use std::sync::LazyLock;
 
 use anyhow::{Result, bail};
 use glam::UVec2;
@@ -14,7 +13,6 @@ use varikernel::settings::{Kernel, MAX_PICTURE_RADIUS, PictureSettings};
 use crate::numbers::{fraction, whole, whole_checked_later};
 use crate::photons::parse_count;
 use crate::synth::parse_size;
-
 
 /// What is rendered, and with how many photons; `figures` takes the same.
 #[derive(Debug, clap::Args)]

@@ -11,8 +11,20 @@ const HANGUP: i32 = 1;
 const INTERRUPT: i32 = 2;
 const TERMINATE: i32 = 15;
 
+/// Signals are heard even where the tests were started with `nohup` or in the background of a script, which
+/// ignore some of them for all that is started below.
+fn listening() -> Command {
+    let program = assert_cmd::cargo::cargo_bin("varikernel");
+    if cfg!(not(target_os = "linux")) {
+        return Command::new(program);
+    }
+    let mut command = Command::new("env");
+    command.arg("--default-signal=HUP,INT,TERM").arg(program);
+    command
+}
+
 fn start(place: &Workplace, arguments: &str) -> Child {
-    Command::new(assert_cmd::cargo::cargo_bin("varikernel"))
+    listening()
         .args(arguments.split_whitespace())
         .current_dir(place.folder.path())
         .stdout(Stdio::null())
