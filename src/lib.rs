@@ -57,7 +57,7 @@
 //! their own.
 //!
 //! # Rooms
-//! Data flows from bottom to top: a module names only modules below it (checked by `tests/layers.rs`).
+//! Data flows from bottom to top: a module names only modules below it (checked by `tests/layers`).
 //!
 //! | module | what it holds |
 //! |---|---|

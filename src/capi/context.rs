@@ -17,7 +17,7 @@ pub type Loader = Option<unsafe extern "C" fn(name: *const c_char, user: *mut c_
 /// state_policy: each call asks the driver for what it touches, and puts it back. Fits any host.
 pub const VARIKERNEL_STATE_RESTORE: u32 = 0;
 
-/// state_policy: the host vouches for OpenGL's defaults when a call starts, and finds them afterwards, but
+/// state_policy: the host guarantees for OpenGL's defaults when a call starts, and finds them afterwards, but
 /// for the viewport. Faster: about 70 questions less a call.
 pub const VARIKERNEL_STATE_DEFAULTS: u32 = 1;
 
@@ -72,12 +72,12 @@ impl Home {
 /// `pointer` is null, or came from a box and was not destroyed.
 pub(super) unsafe fn destroy<T>(pointer: *mut T, home: impl FnOnce(&T) -> &Home) -> Status {
     answer(|| {
-        // SAFETY: as the caller vouches.
+        // SAFETY: guaranteed by the caller.
         let Some(value) = (unsafe { pointer.as_ref() }) else {
             return Ok(());
         };
         home(value).check_drop()?;
-        // SAFETY: as the caller vouches.
+        // SAFETY: guaranteed by the caller.
         drop(unsafe { Box::from_raw(pointer) });
         Ok(())
     })
@@ -86,7 +86,8 @@ pub(super) unsafe fn destroy<T>(pointer: *mut T, home: impl FnOnce(&T) -> &Home)
 fn check_current(get_string: GetString) -> Result<(), Failure> {
     // SAFETY: glGetString takes any value; without a context it returns null.
     if unsafe { get_string(glow::VERSION) }.is_null() {
-        let text = "no OpenGL context is current on this thread\nhelp: make the one current that the handle was made in";
+        let text = "no OpenGL context is current on this thread\nhelp: make the one current that the \
+                    handle was made in";
         return Err(Failure::new(Status::NoContext, text));
     }
     Ok(())
@@ -120,7 +121,7 @@ pub unsafe extern "C" fn varikernel_context_create(
         if get_string.is_null() {
             return Err(Error::no_current_context("the loader does not know glGetString").into());
         }
-        // SAFETY: the host vouches that this is the address of glGetString, which has this type.
+        // SAFETY: the host guarantees that this is the address of glGetString, which has this type.
         let get_string = unsafe { std::mem::transmute::<*const c_void, GetString>(get_string) };
         check_current(get_string)?;
         // SAFETY: a context is current, and `Home::gl` asks before each use whether one is.

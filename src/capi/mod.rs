@@ -2,7 +2,7 @@
 //!
 //! The header is generated from the files here, so their comments speak to C programmers; `examples/cpp` is a
 //! host that uses it. What C can get wrong and we can see is a status: null pointers, values out of range,
-//! another thread, no current context. A panic, our own mistake, ends at the boundary as
+//! another thread, no current context. A panic, which is a bug of the library, ends at the boundary as
 //! [`Status::Internal`]. What can't be seen is for the host to keep: pointers are valid or null, handles are
 //! used between their creation and destruction.
 
@@ -29,7 +29,7 @@ use status::{Failure, Status, answer};
 /// # Safety
 /// `pointer` is null or valid for reads while the reference is in use.
 unsafe fn given<'a, T>(pointer: *const T, name: &str) -> Result<&'a T, Failure> {
-    // SAFETY: as the caller vouches.
+    // SAFETY: guaranteed by the caller.
     unsafe { pointer.as_ref() }.ok_or_else(|| null(name))
 }
 
@@ -50,8 +50,8 @@ fn check_size(name: &str, size: u32, expected: usize) -> Result<(), Failure> {
     Err(Failure::new(
         Status::InvalidArgument,
         format!(
-            "{name} has a size of {size} bytes, this library's has {expected}\nhelp: fill it with {name}_default \
-             first, and compile with the header of version {}",
+            "{name} has a size of {size} bytes, this library's has {expected}\n\
+             help: fill it with {name}_default first, and compile with the header of version {}",
             env!("CARGO_PKG_VERSION")
         ),
     ))

@@ -19,7 +19,7 @@ const _: () = assert!(is_version(env!("CARGO_PKG_VERSION_MAJOR"), VARIKERNEL_VER
 const _: () = assert!(is_version(env!("CARGO_PKG_VERSION_MINOR"), VARIKERNEL_VERSION_MINOR));
 const _: () = assert!(is_version(env!("CARGO_PKG_VERSION_PATCH"), VARIKERNEL_VERSION_PATCH));
 
-/// The version of the library that was loaded, such as "0.2.0"; never null, valid for ever.
+/// The version of the library that was loaded, such as "0.2.0"; never null, valid forever.
 #[unsafe(no_mangle)]
 pub extern "C" fn varikernel_version() -> *const c_char {
     const TEXT: &str = concat!(env!("CARGO_PKG_VERSION"), "\0");

@@ -57,8 +57,8 @@ impl Certificate {
         Err(Error::Setting {
             name: "method",
             value: settings.method.name().to_owned(),
-            reason: "two boxes in a summed-area table certify a radius; choose that method, or certify the map by a \
-                     pipeline of it"
+            reason: "two boxes in a summed-area table certify a radius; choose that method, or certify the \
+                     map by a pipeline of it"
                 .to_owned(),
         })
     }

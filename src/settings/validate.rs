@@ -32,8 +32,8 @@ impl Settings {
                 "max_radius",
                 max_radius.to_string(),
                 format!(
-                    "it goes from 1, where the search starts, to {MAX_RADIUS_LIMIT}, where the area (2 MR + 1)² \
-                     still fits 32 bits"
+                    "it goes from 1, where the search starts, to {MAX_RADIUS_LIMIT}, where the area (2 MR + \
+                     1)² still fits 32 bits"
                 ),
             );
         }
@@ -42,7 +42,8 @@ impl Settings {
                 "max_radius",
                 max_radius.to_string(),
                 format!(
-                    "the naive mipmap goes up to {NAIVE_MAX_RADIUS}: the area of its last block must fit 32 bits"
+                    "the naive mipmap goes up to {NAIVE_MAX_RADIUS}: the area of its last \
+                     block must fit 32 bits"
                 ),
             );
         }

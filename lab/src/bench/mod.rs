@@ -1,7 +1,7 @@
 //! Timing runs: which cases, how long each, the results, and whether two runs differ.
 //!
 //! What is timed is what thesis 5.1 times: state changes, the intermediate structure, the search; not set-up
-//! nor compilation. Every time is also given in *copies* ([`Unit::Copy`](super::Unit)), and every case's
+//! nor compilation. Every time is also given in *copies* ([`Unit::Copy`](varikernel::measure::Unit)), and every case's
 //! answer is checked against the definition before it is ranked.
 //!
 //! A run goes map by map. For each map it goes over all its cases several times, a *set* of samples each
@@ -11,7 +11,7 @@
 //!
 //! A [suite](FastSuite) is a fixed set of maps and cases with [targets](Target) for their ratios.
 //!
-//! `PictureSuite` (with the feature `render`) times the stages of a picture instead.
+//! `PictureSuite` times the stages of a picture instead.
 //!
 //! [Rivals](super::rivals) on the processor are cases like the others, at the stage of a whole frame.
 

@@ -140,8 +140,8 @@ impl RadiusPipeline {
         };
         if adds && plan.count_limit != u32::MAX {
             return Err(Error::Inexact {
-                reason: "so many photons were added that a box may hold more than the sums do, and counts that came in \
-                         parts cannot be clamped to n"
+                reason: "so many photons were added that a box may hold more than the sums do, and counts \
+                         that came in parts cannot be clamped to n"
                     .to_owned(),
                 remedy: "give the map of all photons anew (Changed::Everything)".to_owned(),
             });
