@@ -2,6 +2,7 @@
 
 use glam::UVec2;
 
+use super::host_depth::HostDepth;
 use crate::error::{Error, Result};
 use crate::gl::{
     FragmentTest, Gl, Pass, Program, ShaderSource, StateGuard, Target, Texture, TextureFormat, fill_where,
@@ -105,13 +106,13 @@ impl MaskMaker {
         Ok(Self { gl: gl.clone(), program: Program::new(gl, &Self::shader_source())?, target, mask })
     }
 
-    /// Pixels that have something in front of the far plane: whose depth is less than 1, or, `reversed`, more
-    /// than 0.
+    /// Pixels that have something in front of the far plane: whose depth is less than 1, or more than 0 where it
+    /// is reversed.
     ///
     /// # Errors
-    /// [`Error::Mismatch`] unless `depth` is a GL_TEXTURE_2D with depth, of the masks' size.
-    pub fn from_depth(&mut self, depth: glow::Texture, reversed: bool) -> Result<&Mask> {
-        self.make(depth, FragmentTest::Depth { reversed })
+    /// [`Error::Mismatch`] unless it is a GL_TEXTURE_2D with depth, of the masks' size.
+    pub fn from_depth(&mut self, depth: HostDepth) -> Result<&Mask> {
+        self.make(depth.texture, FragmentTest::Depth { reversed: depth.reversed })
     }
 
     /// Pixels whose stencil value equals `reference` in the bits that are set in `bits`.

@@ -5,22 +5,12 @@
 //!   line of sight, a 32-bit reversed one to about 2^-24 z. Photons are looked for within half a pixel of the
 //!   surface, so that near / far may be 10^-4 or less; a depth of 16 bits is too coarse.
 
+use super::host_depth::HostDepth;
 use crate::error::Result;
 use crate::gl::{Gl, Pass, Program, ShaderSource, StateGuard, Target, Texture, TextureFormat, glsl};
 use crate::view::View;
 
 const LABEL: &str = "positions from depth";
-
-/// A host's depth buffer.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct HostDepth {
-    /// A GL_TEXTURE_2D with depth, with or without stencil, as drawn with the whole depth range from 0 to 1.
-    pub texture: glow::Texture,
-    /// Whether the far plane is at 0.
-    pub reversed: bool,
-    /// Whether depth in clip space goes from 0 to 1 instead of from -1 to 1: GL_ZERO_TO_ONE of glClipControl.
-    pub zero_to_one: bool,
-}
 
 /// Makes positions for [`HostSurfaces`](crate::HostSurfaces) out of depth.
 #[derive(Debug)]

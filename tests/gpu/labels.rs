@@ -251,7 +251,9 @@ fn each_pass_is_a_group_that_is_closed_also_after_an_error() {
     assert_eq!(labels.last().unwrap(), "census");
     other.render(&map).unwrap_err();
     let mut maker = MaskMaker::new(gl, SIZE).unwrap();
-    maker.from_depth(adaptive.update(&Frame::new(&map)).unwrap().texture(), false).unwrap_err();
+    maker
+        .from_depth(crate::support::usual_depth(adaptive.update(&Frame::new(&map)).unwrap().texture()))
+        .unwrap_err();
     assert!(closed_groups().is_some());
     // SAFETY: the context is current.
     unsafe { gl.glow().push_debug_group(glow::DEBUG_SOURCE_APPLICATION, 0, "left open") };

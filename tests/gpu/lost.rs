@@ -173,7 +173,7 @@ impl Objects {
             ("Mask::upload", failure(Mask::upload(gl, &Image::filled(size, 1_u8)))),
             ("Mask::borrow", failure(Mask::borrow(gl, name))),
             ("MaskMaker::new", failure(MaskMaker::new(gl, size))),
-            ("MaskMaker::from_depth", failure(maker.from_depth(name, false))),
+            ("MaskMaker::from_depth", failure(maker.from_depth(crate::support::usual_depth(name)))),
             ("MaskMaker::from_stencil", failure(maker.from_stencil(name, 1, 1))),
             ("Timer::new", failure(Timer::new(gl))),
             ("Timer::time", failure(timer.time(|| Ok(())))),

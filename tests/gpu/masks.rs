@@ -6,7 +6,8 @@ use glam::UVec2;
 use glow::HasContext as _;
 use varikernel::settings::{Edges, SatSamples, Settings, Storage};
 use varikernel::{
-    Changed, CountBounds, Error, Frame, Gl, Image, Mask, MaskMaker, RadiusMap, RadiusPipeline, reference,
+    Changed, CountBounds, Error, Frame, Gl, HostDepth, Image, Mask, MaskMaker, RadiusMap, RadiusPipeline,
+    reference,
 };
 
 use crate::frames::{fast, read, upload, variants};
@@ -180,20 +181,36 @@ fn depth_and_stencil_of_a_host_become_a_mask() {
         let texture = depth_and_stencil(&gl, map.size());
         let mut radii =
             |mask: &Mask| read(pipeline.update(&Frame { mask: Some(mask), ..Frame::new(&map) }).unwrap());
-        assert_same(&radii(maker.from_depth(texture, false).unwrap()), &half(true), "nearer than 1");
+        assert_same(
+            &radii(maker.from_depth(crate::support::usual_depth(texture)).unwrap()),
+            &half(true),
+            "nearer than 1",
+        );
         // 5 and 1 share the lowest bit.
         assert_same(&radii(maker.from_stencil(texture, 1, 0xFF).unwrap()), &half(false), "stencil 1");
         assert_same(&radii(maker.from_stencil(texture, 1, 1).unwrap()), &expected, "the lowest bit");
         assert_same(&radii(maker.from_stencil(texture, 7, 4).unwrap()), &half(true), "the third bit");
         // Reversed, no depth here is that of the far plane.
-        assert_same(&radii(maker.from_depth(texture, true).unwrap()), &expected, "more than 0");
+        assert_same(
+            &radii(
+                maker
+                    .from_depth(HostDepth { reversed: true, ..crate::support::usual_depth(texture) })
+                    .unwrap(),
+            ),
+            &expected,
+            "more than 0",
+        );
         let other = depth_and_stencil(&gl, UVec2::new(9, 9));
         for texture in [other, map_texture(&gl)] {
-            let result = maker.from_depth(texture, false).map(|_| ());
+            let result = maker.from_depth(crate::support::usual_depth(texture)).map(|_| ());
             assert!(matches!(result, Err(Error::Mismatch { .. })), "{result:?}");
         }
         // After an error, the maker is as good as before.
-        assert_same(&radii(maker.from_depth(texture, false).unwrap()), &half(true), "again");
+        assert_same(
+            &radii(maker.from_depth(crate::support::usual_depth(texture)).unwrap()),
+            &half(true),
+            "again",
+        );
     }
 }
 

@@ -7,7 +7,7 @@ use varikernel::settings::{
     Edges, Laboratory, Matching, Method, Order, Planning, SatBuild, SatSamples, Search, Settings, Split,
     Storage,
 };
-use varikernel::{CountBounds, DensityMap, Gl, Image, RadiusPipeline, maps::exactness, reference};
+use varikernel::{CountBounds, DensityMap, Gl, HostDepth, Image, RadiusPipeline, maps::exactness, reference};
 
 use crate::osmesa::osmesa_is_here;
 
@@ -168,4 +168,9 @@ pub(crate) fn rmse(a: &Image<[f32; 3]>, b: &Image<[f32; 3]>) -> f64 {
     let pairs = a.values().as_flattened().iter().zip(b.values().as_flattened());
     let squared: f64 = pairs.map(|(a, b)| f64::from(a - b).powi(2)).sum();
     (squared / f64::from(3 * a.size().element_product())).sqrt()
+}
+
+/// A depth buffer in which the far plane is at 1.
+pub(crate) fn usual_depth(texture: glow::Texture) -> HostDepth {
+    HostDepth { texture, reversed: false, zero_to_one: false }
 }

@@ -128,11 +128,11 @@ fn masks(watch: &Watch<'_>) {
     let depth = watch.textures[1];
     let mut maker = MaskMaker::new(&watch.gl, SIZE).unwrap();
     watch.unchanged("MaskMaker::new");
-    maker.from_depth(depth, false).unwrap();
+    maker.from_depth(crate::support::usual_depth(depth)).unwrap();
     watch.unchanged("MaskMaker::from_depth");
     maker.from_stencil(depth, 5, 0xFF).unwrap();
     watch.unchanged("MaskMaker::from_stencil");
-    assert!(maker.from_depth(watch.textures[0], false).is_err());
+    assert!(maker.from_depth(crate::support::usual_depth(watch.textures[0])).is_err());
     watch.unchanged("MaskMaker::from_depth that fails");
     assert!(maker.from_stencil(watch.textures[0], 0, 1).is_err());
     watch.unchanged("MaskMaker::from_stencil that fails");

@@ -214,7 +214,7 @@ fn a_stencil_reference_is_kept_that_cannot_be_asked_for() {
         // SAFETY: the context is current.
         unsafe { glow.stencil_func(glow::LESS, 3, 0xFF) };
         assert_eq!([reference(true), reference(false)], [3, 0], "the reference cannot be asked for");
-        maker.from_depth(textures[1], false).unwrap();
+        maker.from_depth(crate::support::usual_depth(textures[1])).unwrap();
         maker.from_stencil(textures[1], 5, 0xFF).unwrap();
         maker.from_stencil(textures[0], 5, 0xFF).unwrap_err();
         assert_eq!(reference(true), 3);

@@ -57,7 +57,7 @@ fn check(choice: &context::DeviceChoice, policy: StatePolicy) {
             for _ in 0..3 {
                 adaptive.update(&Frame::new(&map)).unwrap();
             }
-            maker.from_depth(watch.textures[1], false).unwrap();
+            maker.from_depth(crate::support::usual_depth(watch.textures[1])).unwrap();
             assert_eq!(pipeline.radii().read().unwrap(), expected.radius);
         });
     }
