@@ -42,8 +42,8 @@
 #define VARIKERNEL_STATE_RESTORE 0
 
 /**
- * state_policy: the host vouches for OpenGL's defaults when a call starts, and finds them afterwards, but for the viewport.
- * Faster: about 70 questions less a call.
+ * state_policy: the host guarantees for OpenGL's defaults when a call starts, and finds them afterwards, but
+ * for the viewport. Faster: about 70 questions less a call.
  */
 #define VARIKERNEL_STATE_DEFAULTS 1
 
@@ -177,7 +177,8 @@ typedef enum varikernel_status {
      */
     VARIKERNEL_STATUS_OUT_OF_MEMORY = 10,
     /**
-     * The driver lost the context, or the host gave it up: destroy the handles, and make all anew in a new context.
+     * The driver lost the context, or the host gave it up: destroy the handles, and make all anew in a new
+     * context.
      */
     VARIKERNEL_STATUS_CONTEXT_LOST = 11,
     /**
@@ -207,7 +208,8 @@ typedef struct varikernel_pipeline varikernel_pipeline;
 
 /**
  * Finds an OpenGL command by name in the context that is current: eglGetProcAddress, glfwGetProcAddress,
- * SDL_GL_GetProcAddress, wglGetProcAddress with its fallback. Null where there is no such command. `user` is passed on.
+ * SDL_GL_GetProcAddress, wglGetProcAddress with its fallback. Null where there is no such command. `user` is
+ * passed on.
  *
  * It must not throw, and is called by varikernel_context_create alone.
  */
@@ -258,8 +260,8 @@ typedef struct varikernel_frame {
      */
     uint32_t struct_size;
     /**
-     * Photons per pixel: a GL_TEXTURE_2D in the pipeline's format and size, whole numbers that are not negative. It stays
-     * the host's and is only read.
+     * Photons per pixel: a GL_TEXTURE_2D in the pipeline's format and size, whole numbers that are not
+     * negative. It stays the host's and is only read.
      */
     uint32_t density_texture;
     /**
@@ -268,8 +270,8 @@ typedef struct varikernel_frame {
      */
     uint64_t photons_at_most;
     /**
-     * For a pipeline with masks: a GL_R8UI, GL_R16UI or GL_R32UI texture of the map's size, 0 where no radius is
-     * needed; such pixels get radius 0. The name 0 where every pixel needs one. Default 0.
+     * For a pipeline with masks: a GL_R8UI, GL_R16UI or GL_R32UI texture of the map's size, 0 where no
+     * radius is needed; such pixels get radius 0. The name 0 where every pixel needs one. Default 0.
      */
     uint32_t mask_texture;
     /**
@@ -295,7 +297,8 @@ typedef struct varikernel_frame {
 } varikernel_frame;
 
 /**
- * How photons become irradiance. Fill it with varikernel_irradiance_settings_default, then change what you like.
+ * How photons become irradiance. Fill it with varikernel_irradiance_settings_default, then change what you
+ * like.
  */
 typedef struct varikernel_irradiance_settings {
     /**
@@ -303,7 +306,8 @@ typedef struct varikernel_irradiance_settings {
      */
     uint32_t struct_size;
     /**
-     * 0 for kernels that fit the photons' density, else the radius of all kernels, 1 to 96 pixels. Default 0.
+     * 0 for kernels that fit the photons' density, else the radius of all kernels, 1 to 96 pixels. Default
+     * 0.
      */
     uint32_t fixed_radius;
     /**
@@ -329,7 +333,8 @@ typedef struct varikernel_irradiance_settings {
 } varikernel_irradiance_settings;
 
 /**
- * One frame of photons on surfaces. Fill it with varikernel_irradiance_frame_default, then say what you have.
+ * One frame of photons on surfaces. Fill it with varikernel_irradiance_frame_default, then say what you
+ * have.
  */
 typedef struct varikernel_irradiance_frame {
     /**
@@ -337,15 +342,15 @@ typedef struct varikernel_irradiance_frame {
      */
     uint32_t struct_size;
     /**
-     * A GL_TEXTURE_2D in GL_RGBA32F: the place that each pixel shows in scene units, and as fourth value its depth along the
-     * view, 0 where nothing is seen. With from_depth, a texture with depth, drawn with the whole
-     * depth range; it keeps its format and size.
+     * A GL_TEXTURE_2D in GL_RGBA32F: the place that each pixel shows in scene units, and as fourth value its
+     * depth along the view, 0 where nothing is seen. With from_depth, a texture with depth, drawn with the
+     * whole depth range; it keeps its format and size.
      */
     uint32_t position_texture;
     /**
-     * A GL_TEXTURE_2D in GL_RGBA32F, GL_RGBA16F, GL_RGB32F or GL_RGB16F: the normal of length 1 towards the camera, and as
-     * fourth value the surface's number from 1 on, negative where photons do not land, 0 where nothing is seen. Without
-     * a fourth value all surfaces are number 1.
+     * A GL_TEXTURE_2D in GL_RGBA32F, GL_RGBA16F, GL_RGB32F or GL_RGB16F: the normal of length 1 towards the
+     * camera, and as fourth value the surface's number from 1 on, negative where photons do not land, 0
+     * where nothing is seen. Without a fourth value all surfaces are number 1.
      */
     uint32_t normal_texture;
     /**
@@ -357,8 +362,8 @@ typedef struct varikernel_irradiance_frame {
      */
     uint32_t photon_count;
     /**
-     * 1 to add these photons' light to that of the frames before, for the same surfaces and camera: of k such frames, the sum
-     * is k times the light. 0 to forget those. Default 0.
+     * 1 to add these photons' light to that of the frames before, for the same surfaces and camera: of k
+     * such frames, the sum is k times the light. 0 to forget those. Default 0.
      */
     uint32_t added;
     /**
@@ -366,12 +371,13 @@ typedef struct varikernel_irradiance_frame {
      */
     uint32_t depth_reversed;
     /**
-     * With from_depth: 1 if depth in clip space goes from 0 to 1, as GL_ZERO_TO_ONE of glClipControl, else 0. Default 0.
+     * With from_depth: 1 if depth in clip space goes from 0 to 1, as GL_ZERO_TO_ONE of glClipControl, else
+     * 0. Default 0.
      */
     uint32_t depth_zero_to_one;
     /**
-     * From scene units to view space, where the camera looks along -z: column by column as for glUniformMatrix4fv. It turns
-     * and moves only.
+     * From scene units to view space, where the camera looks along -z: column by column as for
+     * glUniformMatrix4fv. It turns and moves only.
      */
     float view[16];
     /**
@@ -407,15 +413,15 @@ extern "C" {
 #endif // __cplusplus
 
 /**
- * The version of the library that was loaded, such as "0.2.0"; never null, valid for ever.
+ * The version of the library that was loaded, such as "0.2.0"; never null, valid forever.
  */
 const char *varikernel_version(void);
 
 /**
  * Whether the loaded library is what a header of this version describes.
  *
- * Call it with VARIKERNEL_VERSION_MAJOR and VARIKERNEL_VERSION_MINOR before anything else. Before version 1.0 both have
- * to be the library's own.
+ * Call it with VARIKERNEL_VERSION_MAJOR and VARIKERNEL_VERSION_MINOR before anything else. Before version
+ * 1.0 both have to be the library's own.
  */
 bool varikernel_is_compatible(uint32_t major,
                               uint32_t minor);
@@ -431,7 +437,8 @@ const char *varikernel_last_error(void);
  * Takes the OpenGL context that is current on this thread, 3.3 core or newer; no extension is needed.
  *
  * `*context` is the host's to destroy. `user` may be null and is not used later. `state_policy` is one of
- * VARIKERNEL_STATE_... and holds for all that is made of the handle; handles of both kinds may be used side by side.
+ * VARIKERNEL_STATE_... and holds for all that is made of the handle; handles of both kinds may be used side
+ * by side.
  *
  * Fails with NO_CONTEXT, VERSION, SETTING, INVALID_ARGUMENT.
  */
@@ -449,8 +456,8 @@ enum varikernel_status varikernel_memory_held(const struct varikernel_context *c
                                               uint64_t *bytes);
 
 /**
- * Says that the OpenGL context has gone, or is about to: nothing made of this handle calls OpenGL from now on. Destroying
- * then frees memory alone, and all other calls answer CONTEXT_LOST.
+ * Says that the OpenGL context has gone, or is about to: nothing made of this handle calls OpenGL from now
+ * on. Destroying then frees memory alone, and all other calls answer CONTEXT_LOST.
  *
  * Fails with WRONG_THREAD, INVALID_ARGUMENT.
  */
@@ -549,9 +556,11 @@ enum varikernel_status varikernel_pipeline_resize(struct varikernel_pipeline *pi
 enum varikernel_status varikernel_pipeline_destroy(struct varikernel_pipeline *pipeline);
 
 /**
- * Allocates and compiles for surfaces of `width` x `height` pixels. Takes milliseconds to seconds; frames only draw.
+ * Allocates and compiles for surfaces of `width` x `height` pixels. Takes milliseconds to seconds; frames
+ * only draw.
  *
- * `*irradiance` is the host's to destroy, before or after `context`. `settings` may be null for the defaults.
+ * `*irradiance` is the host's to destroy, before or after `context`. `settings` may be null for the
+ * defaults.
  *
  * Fails with SETTING, TOO_LARGE, SHADER, OUT_OF_MEMORY, OPEN_GL, INVALID_ARGUMENT, WRONG_THREAD, NO_CONTEXT.
  */
@@ -569,11 +578,11 @@ enum varikernel_status varikernel_irradiance_create(const struct varikernel_cont
  * that of varikernel_pipeline_render, or 0 for a fixed radius; the pointer may be null. Both belong to the
  * handle and hold until its next frame.
  *
- * Waits for the GPU only where a pixel may hold 2^24 photons. With from_depth, a shader is compiled when a depth texture is
- * first seen.
+ * Waits for the GPU only where a pixel may hold 2^24 photons. With from_depth, a shader is compiled when a
+ * depth texture is first seen.
  *
- * Fails with MISMATCH, INEXACT, SETTING, OUT_OF_MEMORY, CONTEXT_LOST, OPEN_GL, INVALID_ARGUMENT, WRONG_THREAD,
- * NO_CONTEXT; the next frame may succeed.
+ * Fails with MISMATCH, INEXACT, SETTING, OUT_OF_MEMORY, CONTEXT_LOST, OPEN_GL, INVALID_ARGUMENT,
+ * WRONG_THREAD, NO_CONTEXT; the next frame may succeed.
  */
 enum varikernel_status varikernel_irradiance_render(struct varikernel_irradiance *irradiance,
                                                     const struct varikernel_irradiance_frame *frame,
@@ -581,8 +590,9 @@ enum varikernel_status varikernel_irradiance_render(struct varikernel_irradiance
                                                     uint32_t *radius_texture);
 
 /**
- * Tells the memory that irradiance takes, before the handle is made: bytes of textures and buffers, as large as their formats
- * say; surfaces, the positions of a depth buffer (16 bytes a pixel) and photons apart. `settings` may be null for the defaults.
+ * Tells the memory that irradiance takes, before the handle is made: bytes of textures and buffers, as large
+ * as their formats say; surfaces, the positions of a depth buffer (16 bytes a pixel) and photons apart.
+ * `settings` may be null for the defaults.
  *
  * Fails with SETTING, INVALID_ARGUMENT.
  */
@@ -594,8 +604,8 @@ enum varikernel_status varikernel_irradiance_memory_required(uint32_t width,
 /**
  * From now on for surfaces of another size, without photons. As varikernel_pipeline_resize.
  *
- * Fails with SETTING, TOO_LARGE, OUT_OF_MEMORY, CONTEXT_LOST, OPEN_GL, INVALID_ARGUMENT, WRONG_THREAD, NO_CONTEXT, and the
- * handle then goes on at its old size.
+ * Fails with SETTING, TOO_LARGE, OUT_OF_MEMORY, CONTEXT_LOST, OPEN_GL, INVALID_ARGUMENT, WRONG_THREAD,
+ * NO_CONTEXT, and the handle then goes on at its old size.
  */
 enum varikernel_status varikernel_irradiance_resize(struct varikernel_irradiance *irradiance,
                                                     uint32_t width,
@@ -609,7 +619,8 @@ enum varikernel_status varikernel_irradiance_resize(struct varikernel_irradiance
 enum varikernel_status varikernel_irradiance_destroy(struct varikernel_irradiance *irradiance);
 
 /**
- * Fills `frame` with the defaults, without textures, photons and camera. `size` is sizeof(varikernel_irradiance_frame).
+ * Fills `frame` with the defaults, without textures, photons and camera. `size` is
+ * sizeof(varikernel_irradiance_frame).
  *
  * Fails with INVALID_ARGUMENT.
  */
