@@ -5,7 +5,7 @@
 //!
 //! | module | what it answers |
 //! |---|---|
-//! | [`bench`] | how long does each stage of each method take, in copies? |
+//! | [`bench`](mod@bench) | how long does each stage of each method take, in copies? |
 //! | [`rivals`] | how long does plain code on the processor take for the same radii? |
 //! | [`study`] | how does run time trade against error, for every way to a radius map, and for pictures? |
 //! | [`stress`] | do the promises about exact numbers hold on this device? |

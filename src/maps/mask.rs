@@ -106,8 +106,8 @@ impl MaskMaker {
         Ok(Self { gl: gl.clone(), program: Program::new(gl, &Self::shader_source())?, target, mask })
     }
 
-    /// Pixels that have something in front of the far plane: whose depth is less than 1, or more than 0 where it
-    /// is reversed.
+    /// Pixels that have something in front of the far plane: whose depth is less than 1, or more than 0 where
+    /// it is reversed.
     ///
     /// # Errors
     /// [`Error::Mismatch`] unless it is a GL_TEXTURE_2D with depth, of the masks' size.

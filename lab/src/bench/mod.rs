@@ -1,8 +1,8 @@
 //! Timing runs: which cases, how long each, the results, and whether two runs differ.
 //!
 //! What is timed is what thesis 5.1 times: state changes, the intermediate structure, the search; not set-up
-//! nor compilation. Every time is also given in *copies* ([`Unit::Copy`](varikernel::measure::Unit)), and every case's
-//! answer is checked against the definition before it is ranked.
+//! nor compilation. Every time is also given in *copies* ([`Unit::Copy`](varikernel::measure::Unit)), and
+//! every case's answer is checked against the definition before it is ranked.
 //!
 //! A run goes map by map. For each map it goes over all its cases several times, a *set* of samples each
 //! time, so that a machine that slows down meanwhile slows all cases alike and the copy with them. Each set

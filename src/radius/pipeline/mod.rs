@@ -77,9 +77,12 @@ impl RadiusPipeline {
     /// Allocates and compiles for maps of `size` in `density_format`.
     ///
     /// # Errors
-    /// [`Error::Setting`] outside a setting's range, [`Error::TooLarge`], [`Error::Shader`] if the driver
-    /// refuses a shader, [`Error::OutOfMemory`] ([`memory_required`](Self::memory_required) says how much is
-    /// needed), [`Error::ContextLost`], [`Error::Gl`] if the driver fails otherwise.
+    /// [`Error::Setting`](crate::Error::Setting) outside a setting's range,
+    /// [`Error::TooLarge`](crate::Error::TooLarge), [`Error::Shader`](crate::Error::Shader) if the driver
+    /// refuses a shader, [`Error::OutOfMemory`](crate::Error::OutOfMemory)
+    /// ([`memory_required`](Self::memory_required) says how much is needed),
+    /// [`Error::ContextLost`](crate::Error::ContextLost), [`Error::Gl`](crate::Error::Gl) if the driver fails
+    /// otherwise.
     pub fn new(gl: &Gl, size: UVec2, density_format: TextureFormat, settings: Settings) -> Result<Self> {
         let decision = planned(size, &settings);
         let settings = decision.as_ref().map_or(settings, |decision| decision.settings);
@@ -147,7 +150,7 @@ impl RadiusPipeline {
     /// How the counts of `density` would be taken in, and whether the result is exact.
     ///
     /// # Errors
-    /// [`Error::Inexact`] as [`render`](Self::render).
+    /// [`Error::Inexact`](crate::Error::Inexact) as [`render`](Self::render).
     pub fn plan(&self, density: &DensityMap) -> Result<Plan> {
         exactness::plan(&self.settings, self.size, density.bounds())
     }
