@@ -31,8 +31,8 @@ pub struct IrradiancePipeline {
     gl: Gl,
     settings: IrradianceSettings,
     density: DensityStage,
-    /// For variable radii; kept while they are fixed.
-    radii: Option<RadiusPipeline>,
+    /// For variable radii, with the settings that were asked for; kept while they are fixed.
+    radii: Option<(Settings, RadiusPipeline)>,
     /// Whether the radii are those of all photons counted.
     searched: bool,
     spreads: Spreads,
@@ -54,7 +54,7 @@ impl IrradiancePipeline {
             density: DensityStage::new(gl, size)?,
             radii: match settings.radius {
                 KernelRadius::Fixed(_) => None,
-                KernelRadius::Variable => Some(radius_pipeline(gl, size, settings.radii)?),
+                KernelRadius::Variable => Some((settings.radii, radius_pipeline(gl, size, settings.radii)?)),
             },
             searched: false,
             spreads: Spreads::new(gl, size, &settings)?,
@@ -63,6 +63,9 @@ impl IrradiancePipeline {
 
     /// Bytes of textures and buffers for surfaces of `size`, without a context: what [`new`](Self::new) and
     /// [`resize`](Self::resize) allocate. A driver may add to it; surfaces and photons are the host's.
+    ///
+    /// After [`change`](Self::change), and where the search is planned each frame, more is allocated; see
+    /// [`MemoryRequired::other_orders`](crate::MemoryRequired::other_orders).
     ///
     /// # Errors
     /// [`Error::Setting`](crate::Error::Setting) outside of a setting's range.
@@ -91,7 +94,7 @@ impl IrradiancePipeline {
         let mut targets = Targets::new(&self.gl, &shapes)?;
         self.gl.check("resizing an irradiance pipeline")?;
         drop(state);
-        if let Some(radii) = &mut self.radii {
+        if let Some((_, radii)) = &mut self.radii {
             radii.resize(size)?;
         }
         self.density.resize(&mut targets);
@@ -101,8 +104,8 @@ impl IrradiancePipeline {
         Ok(())
     }
 
-    /// Goes on with other settings and the photons that were counted; their light has to be
-    /// [`spread`](Self::spread) anew.
+    /// Goes on with other settings and the photons that were counted, without light: it has to be
+    /// [`spread`](Self::spread) anew. The same settings change nothing.
     ///
     /// What was compiled stays for later: a search of the same question, and the last kernel of a splat and
     /// of a gather, of variable and of fixed radii. So it takes more memory than a new pipeline.
@@ -111,11 +114,14 @@ impl IrradiancePipeline {
     /// As [`new`](Self::new); the settings are those of before then.
     pub fn change(&mut self, settings: IrradianceSettings) -> Result<()> {
         settings.validate()?;
+        if settings == self.settings {
+            return Ok(());
+        }
         let size = self.size();
-        let is_known = |pipeline: &RadiusPipeline| *pipeline.settings() == settings.radii;
         let wants_radii = settings.radius == KernelRadius::Variable;
-        let searches = if wants_radii && !self.radii.as_ref().is_some_and(is_known) {
-            Some(radius_pipeline(&self.gl, size, settings.radii)?)
+        let is_known = self.radii.as_ref().is_some_and(|(asked, _)| *asked == settings.radii);
+        let searches = if wants_radii && !is_known {
+            Some((settings.radii, radius_pipeline(&self.gl, size, settings.radii)?))
         } else {
             None
         };
@@ -124,6 +130,8 @@ impl IrradiancePipeline {
             self.radii = searches;
             self.searched = false;
         }
+        // What the stage held when it was used last is of other settings or photons.
+        self.spreads.clear();
         self.settings = settings;
         Ok(())
     }
@@ -163,7 +171,7 @@ impl IrradiancePipeline {
     /// # Errors
     /// As [`RadiusPipeline::update`].
     pub fn search(&mut self) -> Result<Option<&RadiusMap>> {
-        let Some(radii) = self.radii.as_mut().filter(|_| !self.settings.radius.is_fixed()) else {
+        let Some((_, radii)) = self.radii.as_mut().filter(|_| !self.settings.radius.is_fixed()) else {
             return Ok(None);
         };
         self.searched = false;
@@ -184,7 +192,7 @@ impl IrradiancePipeline {
         }
         let radius = match (self.settings.radius, &self.radii) {
             (KernelRadius::Fixed(radius), _) => KernelRadii::Fixed(radius),
-            (KernelRadius::Variable, Some(radii)) => KernelRadii::Map(radii.radii()),
+            (KernelRadius::Variable, Some((_, radii))) => KernelRadii::Map(radii.radii()),
             (KernelRadius::Variable, None) => unreachable!("made with a search"),
         };
         self.spreads.add(surfaces, photons, self.density.power(), radius)
@@ -234,7 +242,7 @@ impl IrradiancePipeline {
     #[must_use]
     pub fn radii(&self) -> Option<&RadiusMap> {
         let radii = self.radii.as_ref().filter(|_| !self.settings.radius.is_fixed());
-        radii.map(RadiusPipeline::radii)
+        radii.map(|(_, radii)| radii.radii())
     }
 
     /// The light so far.

@@ -165,7 +165,7 @@ pub fn plan(settings: &Settings, size: UVec2, bounds: CountBounds) -> Result<Pla
                 }
                 _ => (32, U32_MAX, "lower n or MR, or scale the counts down"),
             };
-            let clamped_by_n = largest_area(settings, size) * u64::from(search.min_photons);
+            let clamped_by_n = largest_area(settings, size).saturating_mul(search.min_photons.into());
             let clamped_box = clamped_by_n.min(bounds.clamped_box_of(settings));
             if densest_box <= limit {
                 Ok(unclamped)

@@ -29,7 +29,7 @@ impl Renderer {
         self.pipeline.count(&self.surfaces, &self.traced.points).map(drop)
     }
 
-    /// Finds all radii anew.
+    /// Finds all radii anew, if they are variable.
     ///
     /// # Errors
     /// As [`IrradiancePipeline::change`] and [`IrradiancePipeline::search`].
@@ -38,14 +38,13 @@ impl Renderer {
         self.pipeline.search().map(drop)
     }
 
-    /// Spreads or gathers all photons, with the radii that are there; what a kernel needs is compiled for its
-    /// first time.
+    /// Spreads or gathers all photons, with the radii that are there; they are searched if photons were
+    /// counted since, and what a kernel needs is compiled for its first time.
     ///
     /// # Errors
     /// As [`IrradiancePipeline::change`] and [`IrradiancePipeline::spread`].
     pub fn spread(&mut self, settings: &PictureSettings) -> Result<&IrradianceMap> {
-        self.pipeline.change(settings.irradiance())?;
-        self.pipeline.clear_light();
+        self.ask(settings.irradiance())?;
         self.pipeline.spread(&self.surfaces, &self.traced.points)
     }
 

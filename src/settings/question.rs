@@ -29,7 +29,7 @@ impl Search {
     pub fn largest_counted_radius(&self) -> u32 {
         match self.order {
             Order::Forward | Order::Binary => self.max_radius,
-            Order::Bracketed => self.max_radius + BRACKET_TILE_SIDE / 2,
+            Order::Bracketed => self.max_radius.saturating_add(BRACKET_TILE_SIDE / 2),
         }
     }
 }

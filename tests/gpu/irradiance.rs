@@ -144,8 +144,8 @@ fn other_settings_give_what_a_new_pipeline_would_and_a_failure_leaves_the_old_on
     for way in WAYS.into_iter().chain(WAYS) {
         let mut fresh = IrradiancePipeline::new(&gl, size, asked(way)).unwrap();
         let expected = fresh.render(&stand.surfaces, &points).unwrap().read().unwrap();
+        // Without the light of the settings before, or of an earlier time with these.
         pipeline.change(asked(way)).unwrap();
-        pipeline.clear_light();
         let found = pipeline.spread(&stand.surfaces, &points).unwrap().read().unwrap();
         assert_eq!(found, expected, "{way:?}");
         assert_eq!(pipeline.radii().is_some(), way.0 == KernelRadius::Variable);

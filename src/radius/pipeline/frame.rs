@@ -64,8 +64,13 @@ impl RadiusPipeline {
             self.plan_frame(frame)?;
         }
         let gl = self.gl.clone();
-        run(&gl, &mut || self.build_frame(frame))?;
-        run(&gl, &mut || self.search_frame(frame).map(drop))?;
+        let outcome = run(&gl, &mut || self.build_frame(frame))
+            .and_then(|()| run(&gl, &mut || self.search_frame(frame).map(drop)));
+        if outcome.is_err() {
+            // The radii may be of an older frame than the table.
+            self.searched = None;
+        }
+        outcome?;
         if plans && let Some(planner) = &mut self.planner {
             planner.count(&self.tables, frame.density)?;
         }
