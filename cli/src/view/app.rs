@@ -153,8 +153,6 @@ impl Running {
 
         let context = egui::Context::default();
         context.set_theme(egui::Theme::Dark);
-        // However long frames take: press and release are in two of them.
-        context.options_mut(|options| options.input_options.max_click_duration = f64::INFINITY);
         let egui = egui_winit::State::new(
             context,
             ViewportId::ROOT,
