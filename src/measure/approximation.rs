@@ -23,8 +23,8 @@ use crate::settings::{Search, Settings};
 
 const HALF_DENSITY: &str = "half density";
 const INTERPOLATION: &str = "interpolated radii";
-/// Pixels between the places of a grid.
-pub const STEPS: [u32; 2] = [4, 8];
+/// Pixels between the places of the grids that the study compares.
+pub const GRID_STEPS: [u32; 2] = [4, 8];
 
 /// An approximation for maps of one size in GL_R32UI, and the radii that it found last.
 #[derive(Debug)]
@@ -160,6 +160,6 @@ fn interpolation_source() -> ShaderSource {
 /// The shaders of every approximation.
 #[must_use]
 pub fn sources(settings: &Settings) -> Vec<ShaderSource> {
-    let grids = STEPS.map(|step| grid_source(TextureFormat::R32Uint, settings, step));
+    let grids = GRID_STEPS.map(|step| grid_source(TextureFormat::R32Uint, settings, step));
     [half_density_source(), interpolation_source()].into_iter().chain(grids).collect()
 }

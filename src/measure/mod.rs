@@ -9,7 +9,7 @@ mod approximation;
 mod point_pass;
 mod unit_pass;
 
-pub use approximation::{Approximation, STEPS, sources as approximation_sources};
+pub use approximation::{Approximation, GRID_STEPS, sources as approximation_sources};
 #[cfg(feature = "scene")]
 pub use point_pass::PointPass;
 pub use unit_pass::{Unit, UnitPass};

@@ -38,7 +38,7 @@ use crate::light::{self, IrradiancePipeline};
 use crate::maps::{PhotonPoints, SurfaceMaps};
 use crate::photon::{Emission, PhotonPoint, TraceSettings};
 use crate::scene::Scene;
-use crate::settings::{IrradianceSettings, KernelRadius, PictureSettings};
+use crate::settings::{KernelRadius, PictureSettings};
 use nearest::PhotonGrid;
 use prepared::Prepared;
 use seen_through::{Wanted, seen_through};
@@ -147,7 +147,7 @@ impl Renderer {
     pub fn picture(&mut self, settings: &PictureSettings) -> Result<(Layers, Account)> {
         settings.validate()?;
         let asked = settings.irradiance();
-        self.ask(asked)?;
+        self.pipeline.change(asked)?;
         self.light.seen_through = seen_through(
             self.surfaces.view(),
             &self.bent,
@@ -155,6 +155,7 @@ impl Renderer {
             Wanted::of(&asked),
             settings.kernel,
         );
+        self.pipeline.clear_light();
         let irradiance = self.pipeline.spread(&self.surfaces, &self.traced.points)?;
         let shaded = self.shade.shade(&self.surfaces, irradiance, &self.light)?;
         let irradiance = irradiance.read()?;
@@ -183,15 +184,6 @@ impl Renderer {
         };
         let account = self.account_of(&position, &normal, &irradiance, &layers.limited)?;
         Ok((layers, account))
-    }
-
-    /// Makes the pipeline ready for these settings, without light.
-    fn ask(&mut self, settings: IrradianceSettings) -> Result<()> {
-        if *self.pipeline.settings() == settings {
-            self.pipeline.clear_light();
-            return Ok(());
-        }
-        self.pipeline.change(settings)
     }
 
     /// Compiles and allocates what a picture with these settings needs, so that the next one takes as long as

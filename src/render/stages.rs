@@ -29,22 +29,30 @@ impl Renderer {
         self.pipeline.count(&self.surfaces, &self.traced.points).map(drop)
     }
 
+    /// Makes ready for the radius, kernel and estimate of `settings`: compiles what is not there yet, and forgets the
+    /// light.
+    ///
+    /// # Errors
+    /// As [`IrradiancePipeline::change`].
+    pub fn change(&mut self, settings: &PictureSettings) -> Result<()> {
+        self.pipeline.change(settings.irradiance())
+    }
+
     /// Finds all radii anew, if they are variable.
     ///
     /// # Errors
-    /// As [`IrradiancePipeline::change`] and [`IrradiancePipeline::search`].
-    pub fn search(&mut self, settings: &PictureSettings) -> Result<()> {
-        self.pipeline.change(settings.irradiance())?;
+    /// As [`IrradiancePipeline::search`].
+    pub fn search(&mut self) -> Result<()> {
         self.pipeline.search().map(drop)
     }
 
-    /// Spreads or gathers all photons, with the radii that are there; they are searched if photons were
-    /// counted since, and what a kernel needs is compiled for its first time.
+    /// Spreads or gathers all photons anew, with the radii that are there; they are searched if photons were counted
+    /// since.
     ///
     /// # Errors
-    /// As [`IrradiancePipeline::change`] and [`IrradiancePipeline::spread`].
-    pub fn spread(&mut self, settings: &PictureSettings) -> Result<&IrradianceMap> {
-        self.ask(settings.irradiance())?;
+    /// As [`IrradiancePipeline::spread`].
+    pub fn spread(&mut self) -> Result<&IrradianceMap> {
+        self.pipeline.clear_light();
         self.pipeline.spread(&self.surfaces, &self.traced.points)
     }
 

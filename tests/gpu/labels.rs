@@ -185,7 +185,8 @@ fn pictures(gl: &Gl) -> varikernel::render::Renderer {
     };
     let mut renderer = varikernel::render::Renderer::with_photons(gl, &scene, &settings, &photons).unwrap();
     renderer.picture(&settings).unwrap();
-    renderer.spread(&PictureSettings { estimate: Estimate::Splat, ..settings }).unwrap();
+    renderer.change(&PictureSettings { estimate: Estimate::Splat, ..settings }).unwrap();
+    renderer.spread().unwrap();
     renderer
 }
 

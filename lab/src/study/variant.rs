@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use serde::{Deserialize, Serialize};
 
-use varikernel::measure::STEPS;
+use varikernel::measure::GRID_STEPS;
 use varikernel::settings::{
     Exactness, Faults, Laboratory, Method, Order, SatBuild, SatSamples, Search, Settings, Split, Storage,
 };
@@ -94,7 +94,7 @@ pub(super) fn all(question: Search) -> Vec<Variant> {
         Order::Bracketed,
         Way::HalfDensity(question),
     ));
-    variants.extend(STEPS.map(|step| {
+    variants.extend(GRID_STEPS.map(|step| {
         let method = format!("grid-{step}");
         Variant::approximation(&method, "scan", Order::Binary, Way::Grid(question, step))
     }));

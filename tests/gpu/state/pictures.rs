@@ -71,12 +71,14 @@ fn stages(watch: &Watch<'_>, scene: &Scene, settings: &PictureSettings) {
     watch.unchanged("Renderer::warm_up");
     renderer.count().unwrap();
     watch.unchanged("Renderer::count");
-    renderer.search(settings).unwrap();
+    renderer.search().unwrap();
     watch.unchanged("Renderer::search");
     for radius in [KernelRadius::Variable, KernelRadius::Fixed(2)] {
         for estimate in [Estimate::Splat, Estimate::Gather { count_correction: false }] {
             let settings = PictureSettings { radius, estimate, ..*settings };
-            let irradiance = renderer.spread(&settings).unwrap().read().unwrap();
+            renderer.change(&settings).unwrap();
+            watch.unchanged("Renderer::change");
+            let irradiance = renderer.spread().unwrap().read().unwrap();
             watch.unchanged("Renderer::spread");
             renderer.account(&irradiance).unwrap();
             watch.unchanged("Renderer::account");

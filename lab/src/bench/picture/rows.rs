@@ -134,15 +134,17 @@ impl<'a> Rows<'a> {
     pub(super) fn run(&mut self, timer: &mut Timer, work: Work) -> Result<Sample> {
         let settings = self.settings_of(work);
         let renderer = &mut self.renderer;
+        // Not timed: another kernel is compiled, and its light cleared, outside of the stage.
+        renderer.change(&settings)?;
         let result = match work {
             Work::Copy => timer.time(|| (0..COPIES).try_for_each(|_| self.copy.run(&self.copied))).map(
                 |((), Sample { query, wall })| ((), Sample { query: query / COPIES, wall: wall / COPIES }),
             ),
             Work::Points => timer.time(|| self.points.run(renderer.photons())),
             Work::Density => timer.time(|| renderer.count()),
-            Work::Radius => timer.time(|| renderer.search(&settings)),
+            Work::Radius => timer.time(|| renderer.search()),
             Work::SplatVariable | Work::SplatFixed | Work::Gather => {
-                timer.time(|| renderer.spread(&settings).map(drop))
+                timer.time(|| renderer.spread().map(drop))
             }
             Work::Photons => {
                 let emission = Emission::new(self.scene, &self.trace)?;
@@ -203,7 +205,7 @@ impl<'a> Rows<'a> {
 
     /// Whether some pixels gather what the definition says.
     fn is_gathered(&mut self) -> Result<bool> {
-        let irradiance = self.renderer.spread(&self.settings_of(Work::Gather))?.read()?;
+        let irradiance = self.light_of(Work::Gather)?;
         let radii = self.found_radii()?;
         let power = reference::photon_power(&self.shown, &self.seen);
         let density = reference::photon_density(&self.shown, &self.seen);
@@ -235,6 +237,12 @@ impl<'a> Rows<'a> {
         Ok(tally.photons == asked && ended == asked && tally.total() == landings && landings > 0)
     }
 
+    /// What a row of light finds, untimed.
+    fn light_of(&mut self, work: Work) -> Result<Image<[f32; 4]>> {
+        self.renderer.change(&self.settings_of(work))?;
+        self.renderer.spread()?.read()
+    }
+
     fn counts(&self) -> Result<Image<f32>> {
         self.renderer.pipeline().density_stage().read_counts()
     }
@@ -245,7 +253,7 @@ impl<'a> Rows<'a> {
 
     /// Whether a splat holds its photons' power.
     fn is_whole(&mut self, work: Work, index: usize) -> Result<bool> {
-        let irradiance = self.renderer.spread(&self.settings_of(work))?.read()?;
+        let irradiance = self.light_of(work)?;
         let account = self.renderer.account(&irradiance)?;
         self.fragments[index] = account.fragments;
         Ok(account.energy_error() < ENERGY)

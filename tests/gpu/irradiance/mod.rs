@@ -2,8 +2,11 @@
 
 #![expect(unsafe_code, reason = "a host speaks OpenGL itself")]
 
+mod change;
+mod host_buffers;
+
 use bytemuck::Pod;
-use glam::{UVec2, Vec3, Vec4};
+use glam::{UVec2, Vec3};
 use glow::HasContext as _;
 use varikernel::render::Renderer;
 use varikernel::scene::Scene;
@@ -133,47 +136,6 @@ fn a_host_gets_the_irradiance_of_the_renderer_to_the_last_bit() {
 }
 
 #[test]
-fn other_settings_give_what_a_new_pipeline_would_and_a_failure_leaves_the_old_ones() {
-    let gl = egl();
-    let stand = Stand::new(&gl, 3000);
-    let (size, points) = (UVec2::splat(SIDE), stand.uploaded(&gl));
-    let asked = |(radius, estimate)| IrradianceSettings { estimate, ..settings(radius) };
-    let mut pipeline = IrradiancePipeline::new(&gl, size, asked(WAYS[0])).unwrap();
-    pipeline.count(&stand.surfaces, &points).unwrap();
-    // Twice, so that each is also met again when it is compiled.
-    for way in WAYS.into_iter().chain(WAYS) {
-        let mut fresh = IrradiancePipeline::new(&gl, size, asked(way)).unwrap();
-        let expected = fresh.render(&stand.surfaces, &points).unwrap().read().unwrap();
-        // Without the light of the settings before, or of an earlier time with these.
-        pipeline.change(asked(way)).unwrap();
-        let found = pipeline.spread(&stand.surfaces, &points).unwrap().read().unwrap();
-        assert_eq!(found, expected, "{way:?}");
-        assert_eq!(pipeline.radii().is_some(), way.0 == KernelRadius::Variable);
-
-        let held = gl.texture_bytes();
-        pipeline.change(settings(KernelRadius::Fixed(97))).unwrap_err();
-        assert_eq!(*pipeline.settings(), asked(way));
-        assert_eq!(gl.texture_bytes(), held);
-        pipeline.clear_light();
-        assert_eq!(pipeline.spread(&stand.surfaces, &points).unwrap().read().unwrap(), expected);
-    }
-    // Another question is another search, of the photons that are counted.
-    let other = Settings { search: Search { min_photons: 9, ..question() }, ..Settings::default() };
-    let other = IrradianceSettings { radii: other, ..settings(KernelRadius::Variable) };
-    pipeline.change(other).unwrap();
-    pipeline.spread(&stand.surfaces, &points).unwrap();
-    let mut fresh = IrradiancePipeline::new(&gl, size, other).unwrap();
-    fresh.render(&stand.surfaces, &points).unwrap();
-    let radii = |pipeline: &IrradiancePipeline| pipeline.radii().unwrap().read().unwrap();
-    assert_eq!(radii(&pipeline), radii(&fresh));
-    // A size that it grows to is empty for all that was compiled.
-    pipeline.resize(2 * size).unwrap();
-    assert_eq!(pipeline.size(), 2 * size);
-    pipeline.change(asked(WAYS[3])).unwrap();
-    assert_eq!(pipeline.irradiance().size(), 2 * size);
-}
-
-#[test]
 fn photons_in_a_buffer_of_the_host_are_those_that_were_uploaded() {
     let gl = egl();
     let stand = Stand::new(&gl, 30_000);
@@ -293,118 +255,6 @@ fn stages_are_usable_apart() {
     assert_eq!(found, expected);
     let error = splat.splat(&stand.surfaces, &points, KernelRadii::Fixed(2)).unwrap_err();
     assert_eq!(error.to_string(), "radius of the kernels: expected a radius map, got a fixed one");
-}
-
-/// Window-space depth of what the pixels show, as a host's projection would give it.
-fn depth_of(position: &Image<[f32; 4]>, view: &View, zero_to_one: bool) -> Image<f32> {
-    position.map(|[x, y, z, depth]| {
-        if depth == 0.0 {
-            return 1.0;
-        }
-        let clip = view.to_clip().as_dmat4() * Vec4::new(x, y, z, 1.0).as_dvec4();
-        let depth = clip.z / clip.w;
-        #[expect(clippy::cast_possible_truncation, reason = "what a depth buffer holds")]
-        let depth = if zero_to_one { depth } else { depth * 0.5 + 0.5 } as f32;
-        depth
-    })
-}
-
-#[test]
-fn positions_come_from_a_depth_buffer() {
-    let gl = egl();
-    let stand = Stand::new(&gl, 20_000);
-    let own = shown(&stand.renderer);
-    let (size, view, points) = (own.view.size(), stand.view(), stand.uploaded(&gl));
-    let camera = stand.scene.camera;
-    let (min, max) = stand.scene.bounds();
-    let (near, far) = camera.depth_range(min, max);
-    let flip = glam::Mat4::from_scale(Vec3::new(1.0, -1.0, 1.0));
-    // From -1 to 1 to from 1 to 0.
-    let reversed = glam::Mat4::from_cols_array_2d(&[
-        [1.0, 0.0, 0.0, 0.0],
-        [0.0, 1.0, 0.0, 0.0],
-        [0.0, 0.0, -0.5, 0.0],
-        [0.0, 0.0, 0.5, 1.0],
-    ]);
-    let projection = reversed * flip * camera.projection(1.0, near, far);
-    let reversed = View::from_matrices(camera.view(), projection, size).unwrap();
-    let positions = |texture: glow::Texture, reversed: bool, zero_to_one: bool, view: &View| {
-        let mut maker = PositionMaker::borrow(&gl, HostDepth { texture, reversed, zero_to_one }).unwrap();
-        let position = maker.render(view).unwrap();
-        (maker, position)
-    };
-    let mut pipeline = IrradiancePipeline::new(&gl, size, settings(KernelRadius::Fixed(2))).unwrap();
-    let expected = pipeline.render(&stand.surfaces, &points).unwrap().read().unwrap();
-    let expected = rgb(&expected).map(|light| light.map(f64::from));
-    for (view, is_reversed) in [(view, false), (reversed, true)] {
-        let mut depth = depth_of(&own.position, &view, is_reversed);
-        // One pixel shows nothing.
-        depth.set(20, 20, if is_reversed { 0.0 } else { 1.0 });
-        let texture = texture(&gl, glow::DEPTH_COMPONENT32F, glow::DEPTH_COMPONENT, glow::FLOAT, &depth);
-        let (_maker, position) = positions(texture, is_reversed, is_reversed, &view);
-        let host = HostSurfaces { position, normal: rgba32(&gl, &own.normal) };
-        let surfaces = SurfaceMaps::borrow(&gl, view, host).unwrap();
-        let found = surfaces.read_position().unwrap();
-        assert!(found.at(20, 20).iter().all(|&value| value == 0.0));
-        let mut worst = 0.0_f32;
-        for (index, (found, expected)) in found.values().iter().zip(own.position.values()).enumerate() {
-            if index != 20 * SIDE as usize + 20 && expected[3] > 0.0 {
-                let apart = (Vec4::from(*found) - Vec4::from(*expected)).abs().max_element();
-                worst = worst.max(apart / (view.pixel_side() * expected[3]));
-            }
-        }
-        assert!(worst < 0.05, "{worst} pixels, where half a pixel is allowed");
-        let irradiance = pipeline.render(&surfaces, &points).unwrap().read().unwrap();
-        let mut found = rgb(&irradiance);
-        let mut expected = expected.clone();
-        // Around the empty pixel, light differs.
-        for (x, y) in (15..26).flat_map(|x| (15..26).map(move |y| (x, y))) {
-            found.set(x, y, [0.0; 3]);
-            expected.set(x, y, [0.0; 3]);
-        }
-        let error = relative_difference(&found, &expected);
-        assert!(error < 0.02, "{error}, reversed: {is_reversed}");
-    }
-    // The other convention gives other places.
-    let wrong = depth_of(&own.position, &view, false);
-    let texture = texture(&gl, glow::DEPTH_COMPONENT32F, glow::DEPTH_COMPONENT, glow::FLOAT, &wrong);
-    let (_maker, position) = positions(texture, false, true, &view);
-    let host = HostSurfaces { position, normal: rgba32(&gl, &own.normal) };
-    let surfaces = SurfaceMaps::borrow(&gl, view, host).unwrap();
-    let found = rgb(&pipeline.render(&surfaces, &points).unwrap().read().unwrap());
-    assert!(relative_difference(&found, &expected) > 0.5);
-}
-
-#[test]
-fn normals_may_be_of_16_bits_and_without_a_number() {
-    let gl = egl();
-    let stand = Stand::new(&gl, 3000);
-    let own = shown(&stand.renderer);
-    let size = own.view.size();
-    let mut pipeline = IrradiancePipeline::new(&gl, size, settings(KernelRadius::Fixed(2))).unwrap();
-    let mut light = |normal: glow::Texture, photons: &[PhotonPoint]| {
-        let host = HostSurfaces { position: rgba32(&gl, &own.position), normal };
-        let surfaces = SurfaceMaps::borrow(&gl, own.view, host).unwrap();
-        let mut points = PhotonPoints::new(&gl);
-        points.upload(photons).unwrap();
-        rgb(&pipeline.render(&surfaces, &points).unwrap().read().unwrap())
-    };
-    // Axes of boxes and numbers of few surfaces are exact in f16: the driver converts.
-    let half = texture(&gl, glow::RGBA16F, glow::RGBA, glow::FLOAT, &own.normal);
-    let expected = light(rgba32(&gl, &own.normal), &stand.photons);
-    let error =
-        relative_difference(&light(half, &stand.photons), &expected.map(|light| light.map(f64::from)));
-    assert!(error < 1e-3, "{error}");
-    // Without a fourth value every surface is number 1.
-    let one: Vec<_> = stand.photons.iter().map(|&photon| PhotonPoint { surface: 1.0, ..photon }).collect();
-    let unnumbered = own.normal.map(|[x, y, z, number]| [x, y, z, if number == 0.0 { 0.0 } else { 1.0 }]);
-    let expected = light(rgba32(&gl, &unnumbered), &one);
-    let seen = own.normal.map(|[x, y, z, _]| [x, y, z]);
-    for internal in [glow::RGB32F, glow::RGB16F] {
-        let found = light(texture(&gl, internal, glow::RGB, glow::FLOAT, &seen), &one);
-        let error = relative_difference(&found, &expected.map(|light| light.map(f64::from)));
-        assert!(error < 1e-3, "{internal:#06x}: {error}");
-    }
 }
 
 #[test]
