@@ -237,9 +237,10 @@ impl Running {
             self.state.quits = true;
         }
         self.window.show()?;
-        // Set after the frame is shown, so that the title describes what is seen.
+        // Set after the frame is shown, so that the title describes what is seen, the panels among it.
         let title = self.state.title();
-        if title != self.title {
+        let is_seen = self.settled == 0 || self.settled >= SETTLED;
+        if is_seen && title != self.title {
             self.window.window().set_title(&title);
             self.title = title;
         }

@@ -20,7 +20,7 @@ use x11rb::rust_connection::RustConnection;
 use x11rb::wrapper::ConnectionExt as _;
 
 /// As long as anything may take on a busy machine without a GPU.
-const PATIENCE: Duration = Duration::from_mins(2);
+const PATIENCE: Duration = Duration::from_mins(4);
 
 /// Xvfb, which ends with this.
 pub(crate) struct Display {
@@ -146,13 +146,15 @@ impl Program<'_> {
         Image::from_values(UVec2::new(width.into(), height.into()), colours)
     }
 
-    /// What is seen once it stays as it is.
+    /// What is seen once it stays as it is, for longer than a frame takes on a busy machine.
     #[track_caller]
     pub(crate) fn look_at_rest(&self) -> Image<[u8; 3]> {
         let mut before = self.look();
+        let mut same = 0;
         self.look_until("rest", |seen| {
             sleep(Duration::from_millis(500));
-            std::mem::replace(&mut before, seen.clone()) == *seen
+            same = if std::mem::replace(&mut before, seen.clone()) == *seen { same + 1 } else { 0 };
+            same == 5
         })
     }
 
