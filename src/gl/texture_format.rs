@@ -15,6 +15,8 @@ pub enum TextureFormat {
     R16Uint,
     /// GL_R8UI: masks.
     R8Uint,
+    /// GL_RGBA8UI: lengths of up to 255 in four directions.
+    Rgba8Uint,
     /// GL_RGBA32UI: four neighbours in one texel, between passes only.
     Rgba32Uint,
     /// GL_RGBA32F: places, normals, colours.
@@ -40,6 +42,7 @@ impl TextureFormat {
             Self::R16Float => glow::R16F,
             Self::R16Uint => glow::R16UI,
             Self::R8Uint => glow::R8UI,
+            Self::Rgba8Uint => glow::RGBA8UI,
             Self::Rgba32Uint => glow::RGBA32UI,
             Self::Rgba32Float => glow::RGBA32F,
             Self::Rgba16Float => glow::RGBA16F,
@@ -56,6 +59,7 @@ impl TextureFormat {
             Self::R16Float => (glow::RED, glow::HALF_FLOAT),
             Self::R16Uint => (glow::RED_INTEGER, glow::UNSIGNED_SHORT),
             Self::R8Uint => (glow::RED_INTEGER, glow::UNSIGNED_BYTE),
+            Self::Rgba8Uint => (glow::RGBA_INTEGER, glow::UNSIGNED_BYTE),
             Self::Rgba32Uint => (glow::RGBA_INTEGER, glow::UNSIGNED_INT),
             Self::Rgba32Float => (glow::RGBA, glow::FLOAT),
             Self::Rgba16Float => (glow::RGBA, glow::HALF_FLOAT),
@@ -73,12 +77,12 @@ impl TextureFormat {
     }
 
     pub(crate) fn is_float(self) -> bool {
-        !matches!(self, Self::R32Uint | Self::R16Uint | Self::R8Uint | Self::Rgba32Uint)
+        !matches!(self, Self::R32Uint | Self::R16Uint | Self::R8Uint | Self::Rgba8Uint | Self::Rgba32Uint)
     }
 
     pub(super) fn texel_bytes(self) -> usize {
         match self {
-            Self::R32Uint | Self::R32Float | Self::Depth32Float => 4,
+            Self::R32Uint | Self::R32Float | Self::Rgba8Uint | Self::Depth32Float => 4,
             Self::R16Uint | Self::R16Float => 2,
             Self::R8Uint => 1,
             Self::Rgba32Uint | Self::Rgba32Float => 16,
@@ -91,7 +95,7 @@ impl TextureFormat {
     /// Values of a texel.
     pub(super) fn components(self) -> usize {
         match self {
-            Self::Rgba32Uint | Self::Rgba32Float | Self::Rgba16Float => 4,
+            Self::Rgba8Uint | Self::Rgba32Uint | Self::Rgba32Float | Self::Rgba16Float => 4,
             Self::Rgb32Float | Self::Rgb16Float => 3,
             _ => 1,
         }
@@ -106,6 +110,7 @@ impl TextureFormat {
             Self::R16Float => "GL_R16F",
             Self::R16Uint => "GL_R16UI",
             Self::R8Uint => "GL_R8UI",
+            Self::Rgba8Uint => "GL_RGBA8UI",
             Self::Rgba32Uint => "GL_RGBA32UI",
             Self::Rgba32Float => "GL_RGBA32F",
             Self::Rgba16Float => "GL_RGBA16F",

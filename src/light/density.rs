@@ -6,8 +6,9 @@
 //! - Exact: additive blending of ones into GL_R32F counts to 2^24 a pixel, where adding 1 stops to count; a
 //!   map that gets there is refused (`blended-counts` of `varikernel stress`). The order of the photons
 //!   changes no count, and so no radius (`order-of-photons`).
-//! - Beside the counts it adds up the photons' power, for estimates that gather, in f32: of N alike photons
-//!   on a pixel the sum is off by up to N 2^-25 of itself.
+//! - Beside the counts it adds up the photons' power. For estimates that gather, in f32: of N alike photons
+//!   on a pixel the sum is off by up to N 2^-25 of itself. For light from tables, in whole units whose sums
+//!   are exact (see [`FluxMap`]): 16 bytes a pixel more.
 
 use glam::{UVec2, Vec4};
 
@@ -18,9 +19,10 @@ use crate::gl::{
 };
 use crate::image::Image;
 use crate::maps::CountBounds;
-use crate::maps::{DensityMap, PhotonPoints, PowerMap, SurfaceMaps};
+use crate::maps::{DensityMap, FluxMap, FluxUnits, PhotonPoints, PhotonTotals, PowerMap, SurfaceMaps};
 
 const LABEL: &str = "density";
+const COARSER: &str = "coarser units";
 
 /// Where adding 1 to an f32 stops to count.
 const MOST: u64 = 1 << 24;
@@ -30,13 +32,22 @@ const MOST: u64 = 1 << 24;
 pub struct DensityStage {
     gl: Gl,
     program: Program,
-    /// Counts, and power with the count again.
+    /// Counts, and what else is added up.
     target: Target,
     /// The counts, with the number of photons drawn as their bounds.
     map: DensityMap,
-    power: PowerMap,
+    beside: Beside,
     /// Photons drawn, and the fullest pixel, when the counts were read last.
     read: (u64, u64),
+}
+
+/// What is added up beside the counts.
+#[derive(Debug)]
+enum Beside {
+    /// Power, and the count again.
+    Power(PowerMap),
+    /// Power in whole units, with what makes units coarser.
+    Flux(FluxMap, Program),
 }
 
 impl DensityStage {
@@ -47,34 +58,118 @@ impl DensityStage {
     /// [`Error::TooLarge`]; [`Error::Shader`] if the driver refuses the shader; [`Error::Gl`] when memory
     /// runs out.
     pub fn new(gl: &Gl, size: UVec2) -> Result<Self> {
-        let _state = StateGuard::new(gl);
-        let mut target = Target::of(gl, &Self::shape(size))?;
-        target.clear_floats(&[Vec4::ZERO; 2]);
-        let (map, power) = maps(&target);
-        Ok(Self { gl: gl.clone(), program: Program::new(gl, &source())?, target, map, power, read: (0, 0) })
+        Self::of_kind(gl, size, false)
     }
 
-    /// The counts, and the power with the count again.
-    pub(crate) fn shape(size: UVec2) -> TargetShape {
-        vec![
-            TextureShape::new("density map", TextureFormat::R32Float, size),
-            TextureShape::new("power of photons", TextureFormat::Rgba32Float, size),
-        ]
+    /// The same with power in whole units, for light from tables: GL_R32F for counts, two GL_RGBA32F.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn with_flux(gl: &Gl, size: UVec2) -> Result<Self> {
+        Self::of_kind(gl, size, true)
+    }
+
+    pub(crate) fn of_kind(gl: &Gl, size: UVec2, has_flux: bool) -> Result<Self> {
+        let _state = StateGuard::new(gl);
+        let target = Target::of(gl, &Self::shape(size, has_flux))?;
+        let map = DensityMap::of_stage(target.texture());
+        let beside = if has_flux {
+            Beside::Flux(flux_map(&target), Program::new(gl, &coarser_source())?)
+        } else {
+            Beside::Power(power_map(&target))
+        };
+        let program = Program::new(gl, &source(has_flux))?;
+        let mut stage = Self { gl: gl.clone(), program, target, map, beside, read: (0, 0) };
+        stage.clear();
+        Ok(stage)
+    }
+
+    /// The counts, and what is added up beside them.
+    pub(crate) fn shape(size: UVec2, has_flux: bool) -> TargetShape {
+        let beside: &[_] = if has_flux { &["flux, low bits", "flux, high bits"] } else { &["power of photons"] };
+        let counts = TextureShape::new("density map", TextureFormat::R32Float, size);
+        let beside = beside.iter().map(|label| TextureShape::new(label, TextureFormat::Rgba32Float, size));
+        std::iter::once(counts).chain(beside).collect()
+    }
+
+    /// Whether power is kept in whole units.
+    pub(crate) fn has_flux(&self) -> bool {
+        matches!(self.beside, Beside::Flux(..))
     }
 
     /// Goes on with another target, without photons.
     pub(crate) fn resize(&mut self, targets: &mut Targets) {
-        self.target = targets.take();
-        (self.map, self.power) = maps(&self.target);
+        self.take(targets.take());
         self.clear();
+    }
+
+    /// Goes on with another target of the same shape.
+    fn take(&mut self, target: Target) {
+        let bounds = self.map.bounds();
+        self.target = target;
+        self.map = DensityMap::of_stage(self.target.texture());
+        self.map.set_bounds(bounds);
+        match &mut self.beside {
+            Beside::Power(power) => *power = power_map(&self.target),
+            Beside::Flux(flux, _) => {
+                let (units, totals) = (flux.units(), *flux.totals());
+                *flux = flux_map(&self.target);
+                flux.set(units, totals);
+            }
+        }
     }
 
     /// Forgets all photons.
     pub fn clear(&mut self) {
         let _state = StateGuard::new(&self.gl);
-        self.target.clear_floats(&[Vec4::ZERO; 2]);
+        self.target.clear_floats(&vec![Vec4::ZERO; self.target.textures().len()]);
         self.map.set_bounds(CountBounds::total_at_most(0));
         self.read = (0, 0);
+        if let Beside::Flux(flux, _) = &mut self.beside {
+            let none = PhotonTotals::default();
+            flux.set(FluxUnits::of(&none), none);
+        }
+    }
+
+    /// Makes room for the power of more photons.
+    fn make_room(&mut self, photons: &PhotonPoints) -> Result<()> {
+        let Beside::Flux(flux, coarser) = &mut self.beside else { return Ok(()) };
+        let Some(totals) = photons.totals() else {
+            return Err(Error::Mismatch {
+                what: "photons for light from tables",
+                expected: "what they carry together, by PhotonPoints::set_totals".to_owned(),
+                got: "a buffer of the host without".to_owned(),
+            });
+        };
+        if !totals.is_finite() {
+            return Err(Error::Mismatch {
+                what: "photons for light from tables",
+                expected: "powers that are finite, and not negative together".to_owned(),
+                got: format!("{} {} {} together", totals.power[0], totals.power[1], totals.power[2]),
+            });
+        }
+        let (before, all) = (flux.units(), *flux.totals() + *totals);
+        let needed = FluxUnits::of(&all);
+        if flux.totals().count == 0 {
+            flux.set(needed, all);
+        } else if needed.max(before) == before {
+            flux.set(before, all);
+        } else {
+            let units = needed.with_room().max(before);
+            let mut target = Target::of(&self.gl, &Self::shape(self.map.size(), true))?;
+            let [low, high] = flux.as_textures();
+            let squares = (before.square_root / units.square_root).powi(2);
+            Pass::new(COARSER, coarser)
+                .read("counts", self.map.as_texture())
+                .read("low", low)
+                .read("high", high)
+                .set("power_factor", before.power / units.power)
+                .set("square_factor", squares)
+                .fill(&mut target)?;
+            flux.set(units, all);
+            self.take(target);
+        }
+        Ok(())
     }
 
     /// Counts photons in, beside those that are there.
@@ -87,12 +182,21 @@ impl DensityStage {
     /// photons; [`Error::Gl`] if the driver fails.
     pub fn add(&mut self, surfaces: &SurfaceMaps, photons: &PhotonPoints) -> Result<&DensityMap> {
         surfaces.check_size(self.map.size())?;
+        let state = StateGuard::new(&self.gl);
+        self.make_room(photons)?;
         let drawn = self.drawn() + photons.count();
         // First, so that the bounds hold also where drawing fails half-way.
         self.map.set_bounds(CountBounds::total_at_most(drawn));
-        let state = StateGuard::new(&self.gl);
         for chunk in photons.chunks() {
-            surfaces.read_by(Pass::new(LABEL, &self.program)).add_points(chunk, &mut self.target)?;
+            let pass = surfaces.read_by(Pass::new(LABEL, &self.program));
+            match &self.beside {
+                Beside::Power(_) => pass,
+                Beside::Flux(flux, _) => {
+                    let FluxUnits { power, square_root } = flux.units();
+                    pass.set("units_of_power", 1.0 / power).set("units_of_root", 1.0 / square_root)
+                }
+            }
+            .add_points(chunk, &mut self.target)?;
         }
         self.gl.check("drawing photons")?;
         drop(state);
@@ -136,24 +240,50 @@ impl DensityStage {
         Ok(counts)
     }
 
-    /// Power of each pixel's photons, and their count again.
+    /// Power of each pixel's photons, and their count again, unless it is kept in whole units.
     #[must_use]
-    pub fn power(&self) -> &PowerMap {
-        &self.power
+    pub fn power(&self) -> Option<&PowerMap> {
+        match &self.beside {
+            Beside::Power(power) => Some(power),
+            Beside::Flux(..) => None,
+        }
+    }
+
+    /// Power of each pixel's photons in whole units, if it is kept so.
+    #[must_use]
+    pub fn flux(&self) -> Option<&FluxMap> {
+        match &self.beside {
+            Beside::Power(_) => None,
+            Beside::Flux(flux, _) => Some(flux),
+        }
     }
 }
 
-/// What the planes of a target hold.
-fn maps(target: &Target) -> (DensityMap, PowerMap) {
-    (DensityMap::of_stage(target.texture()), PowerMap::of_stage(&target.textures()[1]))
+fn power_map(target: &Target) -> PowerMap {
+    PowerMap::of_stage(&target.textures()[1])
 }
 
-/// The shader that the stage compiles.
-pub(crate) fn source() -> ShaderSource {
+fn flux_map(target: &Target) -> FluxMap {
+    FluxMap::of_stage(&target.textures()[1], &target.textures()[2])
+}
+
+/// The shader that counts photons.
+pub(crate) fn source(has_flux: bool) -> ShaderSource {
+    let planes = if has_flux { 2 } else { 1 };
     ShaderSource::new(LABEL)
-        .targets([TextureFormat::R32Float, TextureFormat::Rgba32Float])
+        .variant_if(has_flux, "flux")
+        .define_if(has_flux, "FLUX")
+        .targets([TextureFormat::R32Float])
+        .targets(vec![TextureFormat::Rgba32Float; planes])
         .vertex_file(glsl!("common/surfaces.glsl"))
         .vertex_file(glsl!("common/photon.glsl"))
-        .vertex_file(glsl!("light/density.vert"))
-        .file(glsl!("light/density.frag"))
+        .vertex_file(glsl!("light/density/density.vert"))
+        .file(glsl!("light/density/density.frag"))
+}
+
+/// The shader that makes units coarser.
+pub(crate) fn coarser_source() -> ShaderSource {
+    ShaderSource::new(COARSER)
+        .targets([TextureFormat::R32Float, TextureFormat::Rgba32Float, TextureFormat::Rgba32Float])
+        .file(glsl!("light/density/coarser.frag"))
 }

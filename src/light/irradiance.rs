@@ -11,11 +11,11 @@ use glam::UVec2;
 
 use super::density::{self, DensityStage};
 use super::spread::Spreads;
-use super::{gather, splat};
+use super::{gather, splat, tables};
 use crate::error::Result;
 use crate::gl::{Gl, ShaderSource, StateGuard, Targets, TextureFormat, bytes_of};
 use crate::maps::{
-    DensityMap, Frame, IrradianceMap, KernelRadii, PhotonPoints, PowerMap, RadiusMap, SurfaceMaps,
+    DensityMap, FluxMap, Frame, IrradianceMap, KernelRadii, PhotonPoints, PowerMap, RadiusMap, SurfaceMaps,
 };
 use crate::radius::{RadiusPipeline, check_fits};
 use crate::settings::{Estimate, IrradianceSettings, Kernel, KernelRadius, Settings};
@@ -51,10 +51,11 @@ impl IrradiancePipeline {
         Ok(Self {
             gl: gl.clone(),
             settings,
-            density: DensityStage::new(gl, size)?,
-            radii: match settings.radius {
-                KernelRadius::Fixed(_) => None,
-                KernelRadius::Variable => Some((settings.radii, radius_pipeline(gl, size, settings.radii)?)),
+            density: DensityStage::of_kind(gl, size, needs_flux(&settings))?,
+            radii: if settings.searches_radii() {
+                Some((settings.radii, radius_pipeline(gl, size, settings.radii)?))
+            } else {
+                None
             },
             searched: false,
             spreads: Spreads::new(gl, size, &settings)?,
@@ -73,8 +74,9 @@ impl IrradiancePipeline {
         settings.validate()?;
         // Refuses an empty size as well.
         let radii = RadiusPipeline::memory_required(size, &settings.radii)?.at_creation;
-        let radii = if settings.radius == KernelRadius::Variable { radii } else { 0 };
-        Ok(radii + bytes_of(&[DensityStage::shape(size)]) + Spreads::bytes(size, settings))
+        let radii = if settings.searches_radii() { radii } else { 0 };
+        let density = bytes_of(&[DensityStage::shape(size, needs_flux(settings))]);
+        Ok(radii + density + Spreads::bytes(size, settings))
     }
 
     /// From now on for surfaces of `size`, without photons: programs stay, textures are made anew. The same
@@ -89,7 +91,7 @@ impl IrradiancePipeline {
         }
         check_fits(self.gl.info(), size)?;
         let state = StateGuard::new(&self.gl);
-        let mut shapes = vec![DensityStage::shape(size)];
+        let mut shapes = vec![DensityStage::shape(size, self.density.has_flux())];
         shapes.extend(self.spreads.shapes(size));
         let mut targets = Targets::new(&self.gl, &shapes)?;
         self.gl.check("resizing an irradiance pipeline")?;
@@ -98,14 +100,15 @@ impl IrradiancePipeline {
             radii.resize(size)?;
         }
         self.density.resize(&mut targets);
-        self.spreads.resize(&mut targets);
+        self.spreads.resize(size, &mut targets);
         targets.finish();
         self.searched = false;
         Ok(())
     }
 
     /// Goes on with other settings and the photons that were counted, without light: it has to be
-    /// [`spread`](Self::spread) anew. The same settings change nothing.
+    /// [`spread`](Self::spread) anew. The same settings change nothing. Between tables and the others photons
+    /// are counted otherwise: then there are none, and they have to be [counted](Self::count) anew.
     ///
     /// What was compiled stays for later: a search of the same question, and the last kernel of a splat and
     /// of a gather, of variable and of fixed radii. So it takes more memory than a new pipeline.
@@ -118,7 +121,13 @@ impl IrradiancePipeline {
             return Ok(());
         }
         let size = self.size();
-        let wants_radii = settings.radius == KernelRadius::Variable;
+        let wants_radii = settings.searches_radii();
+        let has_flux = needs_flux(&settings);
+        let density = if has_flux == self.density.has_flux() {
+            None
+        } else {
+            Some(DensityStage::of_kind(&self.gl, size, has_flux)?)
+        };
         let is_known = self.radii.as_ref().is_some_and(|(asked, _)| *asked == settings.radii);
         let searches = if wants_radii && !is_known {
             Some((settings.radii, radius_pipeline(&self.gl, size, settings.radii)?))
@@ -128,6 +137,10 @@ impl IrradiancePipeline {
         self.spreads.change(&self.gl, size, &settings)?;
         if searches.is_some() {
             self.radii = searches;
+            self.searched = false;
+        }
+        if let Some(density) = density {
+            self.density = density;
             self.searched = false;
         }
         // What the stage held when it was used last is of other settings or photons.
@@ -171,7 +184,7 @@ impl IrradiancePipeline {
     /// # Errors
     /// As [`RadiusPipeline::update`].
     pub fn search(&mut self) -> Result<Option<&RadiusMap>> {
-        let Some((_, radii)) = self.radii.as_mut().filter(|_| !self.settings.radius.is_fixed()) else {
+        let Some((_, radii)) = self.radii.as_mut().filter(|_| self.settings.searches_radii()) else {
             return Ok(None);
         };
         self.searched = false;
@@ -193,15 +206,23 @@ impl IrradiancePipeline {
         let radius = match (self.settings.radius, &self.radii) {
             (KernelRadius::Fixed(radius), _) => KernelRadii::Fixed(radius),
             (KernelRadius::Variable, Some((_, radii))) => KernelRadii::Map(radii.radii()),
-            (KernelRadius::Variable, None) => unreachable!("made with a search"),
+            // Tables ask for none.
+            (KernelRadius::Variable, None) => KernelRadii::Fixed(0),
         };
-        self.spreads.add(surfaces, photons, self.density.power(), radius)
+        self.spreads.add(surfaces, photons, &self.density, radius)
     }
 
     /// Forgets all photons and their light: when the camera or what it sees has moved.
     pub fn clear(&mut self) {
         self.clear_photons();
         self.clear_light();
+        self.forget_camera();
+    }
+
+    /// Has what light from tables needs of the camera and the surfaces alone made anew by the next light:
+    /// without this, or [`clear`](Self::clear), these are taken to stand still.
+    pub fn forget_camera(&mut self) {
+        self.spreads.forget_camera();
     }
 
     /// Forgets the photons that were counted.
@@ -232,16 +253,22 @@ impl IrradiancePipeline {
         self.density.map()
     }
 
-    /// Power of each pixel's photons.
+    /// Power of each pixel's photons; for light from tables it is in [`flux`](Self::flux).
     #[must_use]
-    pub fn power(&self) -> &PowerMap {
+    pub fn power(&self) -> Option<&PowerMap> {
         self.density.power()
+    }
+
+    /// Power of each pixel's photons in whole units, for light from tables.
+    #[must_use]
+    pub fn flux(&self) -> Option<&FluxMap> {
+        self.density.flux()
     }
 
     /// The radii of the last photons' kernels, if they are variable; undefined before the first.
     #[must_use]
     pub fn radii(&self) -> Option<&RadiusMap> {
-        let radii = self.radii.as_ref().filter(|_| !self.settings.radius.is_fixed());
+        let radii = self.radii.as_ref().filter(|_| self.settings.searches_radii());
         radii.map(|(_, radii)| radii.radii())
     }
 
@@ -264,6 +291,11 @@ impl IrradiancePipeline {
     }
 }
 
+/// Whether photons are counted in whole units of power.
+fn needs_flux(settings: &IrradianceSettings) -> bool {
+    settings.estimate == Estimate::Tables
+}
+
 fn radius_pipeline(gl: &Gl, size: UVec2, settings: Settings) -> Result<RadiusPipeline> {
     RadiusPipeline::new(gl, size, TextureFormat::R32Float, settings)
 }
@@ -275,13 +307,19 @@ pub fn shader_sources() -> Vec<ShaderSource> {
     let radii = [KernelRadius::Variable, KernelRadius::Fixed(1)];
     let kernels = Kernel::ALL.into_iter().flat_map(|kernel| radii.map(|radius| (kernel, radius)));
     let spreads = kernels.flat_map(|(kernel, radius)| spread_sources(kernel, radius));
-    std::iter::once(density_source()).chain(spreads).collect()
+    std::iter::once(density_source()).chain(spreads).chain(tables_sources()).collect()
 }
 
 /// The shader that counts photons.
 #[must_use]
 pub fn density_source() -> ShaderSource {
-    density::source()
+    density::source(false)
+}
+
+/// The shaders of light from tables, from the one that counts photons on.
+#[must_use]
+pub fn tables_sources() -> Vec<ShaderSource> {
+    [density::source(true), density::coarser_source()].into_iter().chain(tables::all_sources()).collect()
 }
 
 /// The shaders of splats and gathers by one kernel, for variable radii, or fixed ones of any width.

@@ -6,8 +6,10 @@ mod irradiance;
 mod kernel_pass;
 mod splat;
 mod spread;
+mod tables;
 
 pub use density::DensityStage;
 pub use gather::GatherStage;
-pub use irradiance::{IrradiancePipeline, density_source, shader_sources, spread_sources};
+pub use irradiance::{IrradiancePipeline, density_source, shader_sources, spread_sources, tables_sources};
 pub use splat::SplatStage;
+pub use tables::TablesStage;

@@ -1,13 +1,15 @@
-//! The ways from radii to light that a pipeline holds: a splat and a gather, for radii from a map and for
-//! fixed ones.
+//! The ways to light that a pipeline holds: a splat and a gather, for radii from a map and for fixed ones, and
+//! tables.
 
 use glam::UVec2;
 
+use super::density::DensityStage;
 use super::gather::GatherStage;
 use super::splat::SplatStage;
+use super::tables::TablesStage;
 use crate::error::Result;
 use crate::gl::{Gl, TargetShape, Targets, bytes_of};
-use crate::maps::{IrradianceMap, KernelRadii, PhotonPoints, PowerMap, SurfaceMaps};
+use crate::maps::{IrradianceMap, KernelRadii, PhotonPoints, SurfaceMaps};
 use crate::settings::{Estimate, IrradianceSettings, Kernel};
 
 /// Stages that were used, of which one is in use.
@@ -28,6 +30,7 @@ struct Spread {
 enum Stage {
     Splat(Box<SplatStage>),
     Gather(Box<GatherStage>),
+    Tables(Box<TablesStage>),
 }
 
 /// What decides a stage's shaders.
@@ -40,13 +43,17 @@ struct Key {
 
 impl Key {
     fn of(settings: &IrradianceSettings) -> Self {
+        if settings.estimate == Estimate::Tables {
+            // These ask for neither.
+            return Self { kernel: Kernel::Box, is_fixed: false, estimate: settings.estimate };
+        }
         Self { kernel: settings.kernel, is_fixed: settings.radius.is_fixed(), estimate: settings.estimate }
     }
 
     /// Whether one takes the other's place: of each kind, a pipeline holds the last alone.
     fn is_of_kind(self, other: Self) -> bool {
-        let is_splat = |key: Self| key.estimate == Estimate::Splat;
-        (is_splat(self), self.is_fixed) == (is_splat(other), other.is_fixed)
+        let kind = |key: Self| (std::mem::discriminant(&key.estimate), key.is_fixed);
+        kind(self) == kind(other)
     }
 }
 
@@ -55,6 +62,7 @@ impl Stage {
         Ok(match settings.estimate {
             Estimate::Splat => Self::Splat(Box::new(SplatStage::new(gl, size, settings)?)),
             Estimate::Gather { .. } => Self::Gather(Box::new(GatherStage::new(gl, size, settings)?)),
+            Estimate::Tables => Self::Tables(Box::new(TablesStage::new(gl, size)?)),
         })
     }
 }
@@ -70,6 +78,7 @@ impl Spreads {
         match settings.estimate {
             Estimate::Splat => SplatStage::bytes(size),
             Estimate::Gather { .. } => bytes_of(&[IrradianceMap::shape(size)]),
+            Estimate::Tables => TablesStage::bytes(size),
         }
     }
 
@@ -97,37 +106,50 @@ impl Spreads {
         let of = |spread: &Spread| match spread.stage {
             Stage::Splat(_) => SplatStage::shapes(size).to_vec(),
             Stage::Gather(_) => vec![IrradianceMap::shape(size)],
+            Stage::Tables(_) => TablesStage::shapes(size),
         };
         self.made.iter().flat_map(of).collect()
     }
 
-    pub(super) fn resize(&mut self, targets: &mut Targets) {
+    pub(super) fn resize(&mut self, size: UVec2, targets: &mut Targets) {
         for spread in &mut self.made {
             match &mut spread.stage {
                 Stage::Splat(splat) => splat.resize(targets),
                 Stage::Gather(gather) => gather.resize(targets),
+                Stage::Tables(tables) => tables.resize(size, targets),
             }
         }
     }
 
-    /// Forgets the light; a gather holds that of the last photons alone.
+    /// Forgets the light; the others hold that of the last photons alone.
     pub(super) fn clear(&mut self) {
         if let Stage::Splat(splat) = &mut self.made[self.current].stage {
             splat.clear();
         }
     }
 
-    /// Adds the light of `photons`, or gathers that of all photons in `power`.
+    /// The camera or what it sees has moved.
+    pub(super) fn forget_camera(&mut self) {
+        for spread in &mut self.made {
+            if let Stage::Tables(tables) = &mut spread.stage {
+                tables.forget_camera();
+            }
+        }
+    }
+
+    /// Adds the light of `photons`, or gathers that of all photons that were counted.
     pub(super) fn add(
         &mut self,
         surfaces: &SurfaceMaps,
         photons: &PhotonPoints,
-        power: &PowerMap,
+        counted: &DensityStage,
         radius: KernelRadii<'_>,
     ) -> Result<&IrradianceMap> {
-        match &mut self.made[self.current].stage {
-            Stage::Splat(splat) => splat.add(surfaces, photons, radius),
-            Stage::Gather(gather) => gather.gather(surfaces, power, radius),
+        match (&mut self.made[self.current].stage, counted.power(), counted.flux()) {
+            (Stage::Splat(splat), ..) => splat.add(surfaces, photons, radius),
+            (Stage::Gather(gather), Some(power), _) => gather.gather(surfaces, power, radius),
+            (Stage::Tables(tables), _, Some(flux)) => tables.gather(surfaces, flux),
+            (Stage::Gather(_) | Stage::Tables(_), ..) => unreachable!("photons are counted as the light needs"),
         }
     }
 
@@ -135,6 +157,7 @@ impl Spreads {
         match &self.made[self.current].stage {
             Stage::Splat(splat) => splat.irradiance(),
             Stage::Gather(gather) => gather.irradiance(),
+            Stage::Tables(tables) => tables.irradiance(),
         }
     }
 }

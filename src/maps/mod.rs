@@ -2,10 +2,12 @@
 
 mod density;
 pub mod exactness;
+mod flux;
 mod frame;
 mod host_depth;
 mod irradiance;
 mod mask;
+mod photon_totals;
 mod photons;
 mod position;
 mod power;
@@ -15,10 +17,12 @@ mod surfaces;
 pub use density::DensityMap;
 pub use exactness::CountBounds;
 pub(crate) use frame::Rectangle;
+pub use flux::{FluxMap, FluxUnits};
 pub use frame::{Changed, Frame};
 pub use host_depth::HostDepth;
 pub use irradiance::IrradianceMap;
 pub use mask::{Mask, MaskMaker};
+pub use photon_totals::PhotonTotals;
 pub use photons::{KernelRadii, PhotonPoints};
 pub use position::PositionMaker;
 pub use power::PowerMap;

@@ -1,6 +1,6 @@
 //! Photons on their way to the picture, and the radii of their kernels.
 
-use super::RadiusMap;
+use super::{PhotonTotals, RadiusMap};
 use crate::error::{Error, Result};
 use crate::gl::{Gl, StateGuard, Vertices};
 use crate::photon::PhotonPoint;
@@ -17,13 +17,15 @@ pub struct PhotonPoints {
     /// Buffers that [`replace`](Self::replace) left over.
     spare: Vec<Vertices>,
     borrowed: bool,
+    /// Unknown of a host's.
+    totals: Option<PhotonTotals>,
 }
 
 impl PhotonPoints {
     /// None yet.
     #[must_use]
     pub fn new(gl: &Gl) -> Self {
-        Self { gl: gl.clone(), chunks: Vec::new(), spare: Vec::new(), borrowed: false }
+        Self { gl: gl.clone(), chunks: Vec::new(), spare: Vec::new(), borrowed: false, totals: Some(PhotonTotals::default()) }
     }
 
     /// Reads the first `count` photons of a vertex buffer that the host owns and keeps alive as long as this:
@@ -37,7 +39,13 @@ impl PhotonPoints {
         let chunks = (0..count).step_by(CHUNK as usize).map(|first| {
             Vertices::borrow(gl, buffer, first, CHUNK.min(count - first), &PhotonPoint::ATTRIBUTES)
         });
-        Ok(Self { gl: gl.clone(), chunks: chunks.collect::<Result<_>>()?, spare: Vec::new(), borrowed: true })
+        Ok(Self {
+            gl: gl.clone(),
+            chunks: chunks.collect::<Result<_>>()?,
+            spare: Vec::new(),
+            borrowed: true,
+            totals: None,
+        })
     }
 
     /// Adds photons; best many at once.
@@ -54,8 +62,20 @@ impl PhotonPoints {
                     .map(|vertices| vertices.labelled("photons")),
             };
             self.chunks.push(vertices?);
+            self.totals = self.totals.map(|totals| totals + PhotonTotals::of(chunk));
         }
         Ok(())
+    }
+
+    /// Says what the photons of the host's buffer carry together, or more: light from tables has to know.
+    pub fn set_totals(&mut self, totals: PhotonTotals) {
+        self.totals = Some(totals);
+    }
+
+    /// What they carry together; unknown of a host's buffer until it is set.
+    #[must_use]
+    pub fn totals(&self) -> Option<&PhotonTotals> {
+        self.totals.as_ref()
     }
 
     /// Puts other photons in the place of all, in the buffers that are there: for photons that are new each
@@ -66,6 +86,7 @@ impl PhotonPoints {
     pub fn replace(&mut self, photons: &[PhotonPoint]) -> Result<()> {
         self.check_ours()?;
         self.spare.append(&mut self.chunks);
+        self.totals = Some(PhotonTotals::default());
         let uploaded = self.upload(photons);
         if uploaded.is_err() {
             self.spare.append(&mut self.chunks);

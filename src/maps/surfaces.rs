@@ -155,11 +155,15 @@ impl SurfaceMaps {
 
     /// What `common/surfaces.glsl` reads and sets, but for the camera's place, which not every shader uses.
     pub(crate) fn read_by<'a>(&'a self, pass: Pass<'a>) -> Pass<'a> {
-        pass.read("position", &self.position)
-            .read("normal", &self.normal)
+        self.read_places_by(pass)
             .set("map_size", self.size().as_ivec2())
             .set("pixel_side", self.view.pixel_side())
             .set("to_clip", self.view.to_clip())
+    }
+
+    /// The two textures alone.
+    pub(crate) fn read_places_by<'a>(&'a self, pass: Pass<'a>) -> Pass<'a> {
+        pass.read("position", &self.position).read("normal", &self.normal)
     }
 
     #[cfg(feature = "scene")]
@@ -167,7 +171,6 @@ impl SurfaceMaps {
         &self.position
     }
 
-    #[cfg(feature = "scene")]
     pub(crate) fn normal(&self) -> &Texture {
         &self.normal
     }

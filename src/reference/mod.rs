@@ -11,6 +11,7 @@ mod naive_mipmap;
 mod picture;
 pub mod pyramid;
 mod summed_area_table;
+pub mod tables;
 
 pub use definition::{enough, radius};
 pub use naive_mipmap::naive_mipmap;

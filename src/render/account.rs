@@ -58,15 +58,15 @@ impl Renderer {
         irradiance: &Image<[f32; 4]>,
         limited: &Image<u8>,
     ) -> Result<Account> {
-        let power = self.pipeline.power().read()?;
+        let counts = self.pipeline.density_stage().read_counts()?;
+        let power = self.read_power()?;
         let view = self.surfaces.view();
         let (mut contributing, mut fragments) = (0.0, 0.0);
         let (mut power_in, mut power_out) = (DVec3::ZERO, DVec3::ZERO);
         let (mut diffuse, mut ended) = (0_u32, 0_u32);
-        for (index, photons) in power.values().iter().enumerate() {
-            let [red, green, blue, count] = photons.map(f64::from);
-            contributing += count;
-            power_in += DVec3::new(red, green, blue);
+        for (index, &power) in power.values().iter().enumerate() {
+            contributing += f64::from(counts.values()[index]);
+            power_in += DVec3::from_array(power);
             let [red, green, blue, drawn] = irradiance.values()[index].map(f64::from);
             fragments += drawn;
             if normal.values()[index][3] > 0.0 {
@@ -89,6 +89,19 @@ impl Renderer {
             cut_off_share: self.traced.cut_off_share,
             limited_share: f64::from(ended) / f64::from(diffuse.max(1)),
         })
+    }
+}
+
+impl Renderer {
+    /// Power of each pixel's photons, linear RGB.
+    fn read_power(&self) -> Result<Image<[f64; 3]>> {
+        match (self.pipeline.flux(), self.pipeline.power()) {
+            (Some(flux), _) => flux.read(),
+            (None, Some(power)) => {
+                Ok(power.read()?.map(|[red, green, blue, _]| [red, green, blue].map(f64::from)))
+            }
+            (None, None) => unreachable!("power is added up in one way or the other"),
+        }
     }
 }
 

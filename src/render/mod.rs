@@ -38,7 +38,7 @@ use crate::light::{self, IrradiancePipeline};
 use crate::maps::{PhotonPoints, SurfaceMaps};
 use crate::photon::{Emission, PhotonPoint, TraceSettings};
 use crate::scene::Scene;
-use crate::settings::{KernelRadius, PictureSettings};
+use crate::settings::{Estimate, KernelRadius, PictureSettings};
 use nearest::PhotonGrid;
 use prepared::Prepared;
 use seen_through::{Wanted, seen_through};
@@ -148,6 +148,7 @@ impl Renderer {
         settings.validate()?;
         let asked = settings.irradiance();
         self.pipeline.change(asked)?;
+        self.count_unless_known()?;
         self.light.seen_through = seen_through(
             self.surfaces.view(),
             &self.bent,
@@ -163,6 +164,11 @@ impl Renderer {
         let (position, normal) = (self.surfaces.read_position()?, self.surfaces.read_normal()?);
         let size = self.surfaces.size();
         let (radius, limited) = match (settings.radius, self.pipeline.radii()) {
+            _ if settings.estimate == Estimate::Tables => {
+                #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "up to 64")]
+                let radius = irradiance.map(|[.., radius]| radius.round() as u32);
+                (radius, Image::filled(size, 0))
+            }
             (KernelRadius::Fixed(radius), _) => (Image::filled(size, radius), Image::filled(size, 0)),
             (KernelRadius::Variable, Some(radii)) => {
                 let limited = radii.read_limited()?;
@@ -186,6 +192,14 @@ impl Renderer {
         Ok((layers, account))
     }
 
+    /// Counts all photons, if the pipeline has none of them.
+    fn count_unless_known(&mut self) -> Result<()> {
+        if self.pipeline.density_stage().drawn() == 0 {
+            self.pipeline.count(&self.surfaces, &self.traced.points)?;
+        }
+        Ok(())
+    }
+
     /// Compiles and allocates what a picture with these settings needs, so that the next one takes as long as
     /// those after it: radii are searched, and again for the next picture, and a photon that is nowhere is
     /// drawn.
@@ -197,6 +211,7 @@ impl Renderer {
         let mut nowhere = PhotonPoints::new(&self.gl);
         nowhere.upload(&[PhotonPoint::zeroed()])?;
         self.pipeline.change(settings.irradiance())?;
+        self.count_unless_known()?;
         let irradiance = self.pipeline.spread(&self.surfaces, &nowhere)?;
         self.shade.shade(&self.surfaces, irradiance, &self.light)?;
         self.pipeline.clear_radii();

@@ -82,7 +82,8 @@ impl Reference {
         self.density.clear();
         self.density.add(&self.surfaces, &traced.points)?;
         // The counts are checked before they are believed.
-        add_up(&mut self.power, &self.density.power().read()?);
+        let power = self.density.power().unwrap_or_else(|| unreachable!("made without units"));
+        add_up(&mut self.power, &power.read()?);
         let through = seen_through(&view, &self.bent, traced.grid.as_ref(), Wanted::Fixed(0), Kernel::Box);
         add_up(&mut self.seen_through, &through);
         self.seeds += 1;

@@ -35,7 +35,8 @@ impl Renderer {
     /// # Errors
     /// As [`IrradiancePipeline::change`].
     pub fn change(&mut self, settings: &PictureSettings) -> Result<()> {
-        self.pipeline.change(settings.irradiance())
+        self.pipeline.change(settings.irradiance())?;
+        self.count_unless_known()
     }
 
     /// Finds all radii anew, if they are variable.
@@ -44,6 +45,11 @@ impl Renderer {
     /// As [`IrradiancePipeline::search`].
     pub fn search(&mut self) -> Result<()> {
         self.pipeline.search().map(drop)
+    }
+
+    /// Has what light from tables needs of the camera alone made anew by the next light.
+    pub fn forget_camera(&mut self) {
+        self.pipeline.forget_camera();
     }
 
     /// Spreads or gathers all photons anew, with the radii that are there; they are searched if photons were counted

@@ -16,6 +16,9 @@ pub enum Estimate {
         /// Whether (c - 1) / c of what c photons give is taken, as a radius that ends at a photon asks for.
         count_correction: bool,
     },
+    /// Each pixel gathers from summed-area tables, as wide as a test of noise allows; radii and kernels are
+    /// not asked for.
+    Tables,
 }
 
 /// Everything that light from photons depends on beside the photons and surfaces.
@@ -58,6 +61,12 @@ impl Default for IrradianceSettings {
 }
 
 impl IrradianceSettings {
+    /// Whether each pixel's radius is searched.
+    #[must_use]
+    pub fn searches_radii(&self) -> bool {
+        self.radius == KernelRadius::Variable && self.estimate != Estimate::Tables
+    }
+
     /// Checks every range.
     ///
     /// # Errors

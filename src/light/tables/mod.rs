@@ -1,0 +1,205 @@
+//! Light gathered from summed-area tables, each pixel as wide as a test of noise allows: no radii are
+//! searched and no photon is drawn as a kernel.
+//!
+//! - A pixel's irradiance is the flux of a box around it over the area that the box sees, four fetches each.
+//!   The box ends where the face ends ([`camera`]).
+//! - Boxes have radii of 0, 1, 2, 4, ... 64 pixels. Each is compared with the one before: where the light
+//!   differs by no more than noise would make it, the wider one is better. Tests are pooled over a box twice
+//!   as wide, since that of one pixel is noise itself; between widths light is mixed.
+//! - There is no n: where photons are many or light changes, boxes stay small.
+//! - Exact: sums of whole numbers modulo 2^32, the same whatever the order of the photons (see
+//!   [`FluxMap`]). Quotients are f32.
+//! - Cost: whatever the number of photons and the widths. Memory: about 140 bytes a pixel.
+//!
+//! After F. Rousselle, C. Knaus, M. Zwicker, "Adaptive sampling and reconstruction using greedy error
+//! minimization" (2011), on the tables of F. Crow (1984).
+
+mod camera;
+mod scan;
+
+use glam::UVec2;
+
+use crate::error::Result;
+use crate::gl::{
+    Gl, Pass, Program, ShaderSource, StateGuard, Target, TargetShape, Targets, TextureFormat, TextureShape,
+    bytes_of, glsl,
+};
+use crate::maps::{FluxMap, IrradianceMap, SurfaceMaps};
+use camera::CameraMaps;
+use scan::{Channels, ScanPrograms, SummedTable};
+
+const POINTS: &str = "flux of pixels";
+const TEST_FINE: &str = "test of noise, narrow";
+const TEST_COARSE: &str = "test of noise, wide";
+const GATHER: &str = "light from tables";
+
+/// Gathers light from tables into maps of one size.
+#[derive(Debug)]
+pub struct TablesStage {
+    gl: Gl,
+    one: ScanPrograms,
+    four: ScanPrograms,
+    points_program: Program,
+    tests: [Program; 2],
+    gather: Program,
+    camera: CameraMaps,
+    points: Target,
+    flux_table: SummedTable,
+    /// Of narrow boxes at each pixel, and of wide ones at every second.
+    ratios: [Target; 2],
+    ratio_tables: [SummedTable; 2],
+    irradiance: IrradianceMap,
+}
+
+impl TablesStage {
+    /// Allocates and compiles for maps of `size`.
+    ///
+    /// # Errors
+    /// [`Error::TooLarge`](crate::Error::TooLarge); [`Error::Shader`](crate::Error::Shader) if the driver
+    /// refuses a shader; [`Error::Gl`](crate::Error::Gl) when memory runs out.
+    pub fn new(gl: &Gl, size: UVec2) -> Result<Self> {
+        let _state = StateGuard::new(gl);
+        let [points, fine, coarse, gather] = sources();
+        let targets = &mut Targets::new(gl, &Self::shapes(size))?;
+        Ok(Self {
+            gl: gl.clone(),
+            one: ScanPrograms::new(gl, Channels::One)?,
+            four: ScanPrograms::new(gl, Channels::Four)?,
+            points_program: Program::new(gl, &points)?,
+            tests: [Program::new(gl, &fine)?, Program::new(gl, &coarse)?],
+            gather: Program::new(gl, &gather)?,
+            camera: CameraMaps::new(gl, size, targets)?,
+            points: targets.take(),
+            flux_table: SummedTable::take(size, targets),
+            ratios: [targets.take(), targets.take()],
+            ratio_tables: [SummedTable::take(size, targets), SummedTable::take(halved(size), targets)],
+            irradiance: IrradianceMap::of(targets.take()),
+        })
+    }
+
+    /// What depends on the size.
+    pub(super) fn shapes(size: UVec2) -> Vec<TargetShape> {
+        let four = |label, size| vec![TextureShape::new(label, TextureFormat::Rgba32Uint, size)];
+        let table = |size| SummedTable::shapes(Channels::Four, size);
+        let mut shapes = CameraMaps::shapes(size);
+        shapes.push(four(POINTS, size));
+        shapes.extend(table(size));
+        shapes.extend([four(TEST_FINE, size), four(TEST_COARSE, halved(size))]);
+        shapes.extend([table(size), table(halved(size))].concat());
+        shapes.push(IrradianceMap::shape(size));
+        shapes
+    }
+
+    /// Bytes of the textures for maps of `size`.
+    pub(super) fn bytes(size: UVec2) -> u64 {
+        // Two textures of one texel each stand for nothing before a line.
+        bytes_of(&Self::shapes(size)) + 20
+    }
+
+    /// Goes on with other targets.
+    pub(super) fn resize(&mut self, size: UVec2, targets: &mut Targets) {
+        self.camera.resize(size, targets);
+        self.points = targets.take();
+        self.flux_table = SummedTable::take(size, targets);
+        self.ratios = [targets.take(), targets.take()];
+        self.ratio_tables = [SummedTable::take(size, targets), SummedTable::take(halved(size), targets)];
+        self.irradiance = IrradianceMap::of(targets.take());
+    }
+
+    /// The camera or what it sees has changed: areas and extents are made anew by the next
+    /// [`gather`](Self::gather).
+    pub fn forget_camera(&mut self) {
+        self.camera.forget();
+    }
+
+    /// Gathers at every pixel from the flux of each pixel's photons. Areas and extents are those of before,
+    /// unless they were [forgotten](Self::forget_camera).
+    ///
+    /// # Errors
+    /// [`Error::Mismatch`](crate::Error::Mismatch) if a map has another size; [`Error::Gl`](crate::Error::Gl)
+    /// if the driver fails.
+    pub fn gather(&mut self, surfaces: &SurfaceMaps, flux: &FluxMap) -> Result<&IrradianceMap> {
+        surfaces.check_size(self.irradiance.size())?;
+        let [low, high] = flux.as_textures();
+        surfaces.check_size(low.size())?;
+        let _state = StateGuard::new(&self.gl);
+        self.camera.update(surfaces, &self.one)?;
+
+        Pass::new(POINTS, &self.points_program)
+            .read("low", low)
+            .read("high", high)
+            .read("weights", self.camera.weights())
+            .fill(&mut self.points)?;
+        self.flux_table.build(&self.four, self.points.texture())?;
+
+        let units = flux.units();
+        let square = f64::from(units.square_root).powi(2);
+        #[expect(clippy::cast_possible_truncation, reason = "quotients within the range of f32")]
+        let (square_unit, usual_square) =
+            ((square / f64::from(units.power).powi(2)) as f32, (flux.totals().mean_square() / square) as f32);
+        let [fine, coarse] = &mut self.ratios;
+        for (label, program, target) in
+            [(TEST_FINE, &self.tests[0], &mut *fine), (TEST_COARSE, &self.tests[1], &mut *coarse)]
+        {
+            let pass = Pass::new(label, program)
+                .read("extents", self.camera.extents())
+                .read("flux_table", self.flux_table.texture())
+                .read("area_table", self.camera.table())
+                .set("square_unit", square_unit)
+                .set("usual_square", usual_square);
+            if label == TEST_FINE {
+                pass.read("points", self.points.texture()).read("areas", self.camera.areas())
+            } else {
+                pass
+            }
+            .fill(target)?;
+        }
+        for (table, ratios) in self.ratio_tables.iter_mut().zip(&self.ratios) {
+            table.build(&self.four, ratios.texture())?;
+        }
+        Pass::new(GATHER, &self.gather)
+            .read("normal", surfaces.normal())
+            .read("extents", self.camera.extents())
+            .read("flux_table", self.flux_table.texture())
+            .read("area_table", self.camera.table())
+            .read("fine_tests", self.ratio_tables[0].texture())
+            .read("coarse_tests", self.ratio_tables[1].texture())
+            .read("log_areas", self.camera.log_areas())
+            .set("flux_unit", units.power)
+            .fill(self.irradiance.target())?;
+        self.gl.check("gathering light from tables")?;
+        Ok(&self.irradiance)
+    }
+
+    /// What was gathered last.
+    #[must_use]
+    pub fn irradiance(&self) -> &IrradianceMap {
+        &self.irradiance
+    }
+}
+
+/// Every second pixel of every second row.
+fn halved(size: UVec2) -> UVec2 {
+    size.map(|side| side.div_ceil(2))
+}
+
+/// The shaders of each frame beside those of tables, in the order of the passes.
+fn sources() -> [ShaderSource; 4] {
+    let four = |label| ShaderSource::new(label).targets([TextureFormat::Rgba32Uint]);
+    let test = |label| four(label).file(glsl!("light/tables/box.glsl")).file(glsl!("light/tables/noise.glsl"));
+    [
+        four(POINTS).file(glsl!("light/tables/points.frag")),
+        test(TEST_FINE).file(glsl!("light/tables/test_fine.frag")),
+        test(TEST_COARSE).file(glsl!("light/tables/test_coarse.frag")),
+        ShaderSource::new(GATHER)
+            .targets([TextureFormat::Rgba32Float])
+            .file(glsl!("light/tables/box.glsl"))
+            .file(glsl!("light/tables/area_unit.glsl"))
+            .file(glsl!("light/tables/gather.frag")),
+    ]
+}
+
+/// All shaders of light from tables.
+pub(super) fn all_sources() -> Vec<ShaderSource> {
+    scan::all_sources().into_iter().chain(camera::sources()).chain(sources()).collect()
+}

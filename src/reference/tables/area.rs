@@ -1,0 +1,53 @@
+//! Areas of pixels in whole units.
+
+use glam::Vec3;
+
+use crate::image::Image;
+use crate::view::View;
+
+/// The geometric mean of all areas is 2 to this, in units.
+const MEAN_EXPONENT: i32 = 13;
+/// The most units that an area counts as.
+const MOST_UNITS: f64 = 262_144.0;
+/// The least cosine between a surface's normal and the line of sight.
+const LEAST_COSINE: f64 = 1e-3;
+
+/// Areas that pixels see.
+#[derive(Clone, Debug)]
+pub struct Areas {
+    /// In squares of a scene unit; a power of two.
+    pub unit: f64,
+    /// In units; 0 where nothing is lit.
+    pub units: Image<u32>,
+    /// What flux is multiplied with so that it stays that of the true area.
+    pub weights: Image<f64>,
+}
+
+impl Areas {
+    /// Of what [`SurfaceMaps`](crate::SurfaceMaps) hold.
+    #[must_use]
+    pub fn of(view: &View, position: &Image<[f32; 4]>, normal: &Image<[f32; 4]>) -> Self {
+        let area = Image::from_fn(position.size(), |x, y| {
+            let [facing_x, facing_y, facing_z, number] = normal.at(x, y);
+            let [place_x, place_y, place_z, depth] = position.at(x, y);
+            (number > 0.0).then(|| {
+                let sight = Vec3::new(place_x, place_y, place_z).as_dvec3() - view.position().as_dvec3();
+                let cosine = Vec3::new(facing_x, facing_y, facing_z).as_dvec3().dot(sight).abs();
+                let slant = cosine.max(LEAST_COSINE * sight.length());
+                f64::from(view.pixel_side()).powi(2) * f64::from(depth).powi(3) / slant
+            })
+        });
+        let logarithms: Vec<f64> = area.values().iter().flatten().map(|area| area.log2()).collect();
+        #[expect(clippy::cast_precision_loss, reason = "a number of pixels")]
+        let mean = logarithms.iter().sum::<f64>() / logarithms.len().max(1) as f64;
+        let unit = ((mean + 0.5).floor() - f64::from(MEAN_EXPONENT)).exp2();
+        let exact = area.map(|area| area.map_or(0.0, |area| area / unit));
+        let whole = |exact: f64| {
+            if 3.0 * exact >= 2.0 { (exact + 0.5).floor().min(MOST_UNITS) } else { 0.0 }
+        };
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most 2^18")]
+        let units = exact.map(|exact| whole(exact) as u32);
+        let weights = exact.map(|exact| if whole(exact) > 0.0 { whole(exact) / exact } else { 0.0 });
+        Self { unit, units, weights }
+    }
+}

@@ -1,0 +1,166 @@
+//! Light from tables by its definition: sums by nested loops, quotients in f64 ([`TablesStage`]).
+//!
+//! [`TablesStage`]: crate::TablesStage
+
+mod area;
+mod face;
+
+pub use area::Areas;
+pub use face::extents;
+
+use super::Inside;
+use crate::image::Image;
+
+/// Radii of the boxes, in pixels; the last is 64.
+pub const RADII: [u32; 8] = [0, 1, 2, 4, 8, 16, 32, 64];
+/// The most that a squared difference counts, in its variances.
+const MOST: f64 = 6.0;
+/// Ratios so far from 1 decide all.
+const SOFT: f64 = 0.4;
+/// Tests are pooled over boxes so many times as wide.
+const POOL: u32 = 2;
+/// Ratios are summed in whole numbers of this.
+const RATIO_UNIT: f64 = 1.0 / 8192.0;
+
+/// What light is gathered from, of every pixel.
+#[derive(Clone, Debug)]
+pub struct Tables {
+    /// Area in units; 0 where nothing is lit.
+    pub areas: Image<u32>,
+    /// Flux in units: red, green, blue and squares of their mean.
+    pub flux: Image<[u32; 4]>,
+    /// Pixels that the face goes on to the left, to the right, down (to lower rows) and up.
+    pub extents: Image<[u8; 4]>,
+    /// The unit of squares over the square of that of power.
+    pub square_unit: f64,
+    /// Square of a photon's power in the mean, in units of squares.
+    pub usual_square: f64,
+}
+
+/// Light of a pixel, in units of power over those of area, and the radius that it came from.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Gathered {
+    /// Red, green and blue.
+    pub light: [f64; 3],
+    /// In pixels, between two of [`RADII`] where light is mixed.
+    pub radius: f64,
+}
+
+/// What a box holds.
+#[derive(Clone, Copy, Debug, Default)]
+struct Held {
+    flux: [f64; 3],
+    squares: f64,
+    area: f64,
+}
+
+impl Tables {
+    /// Light of every pixel.
+    #[must_use]
+    pub fn gather(&self) -> Image<Gathered> {
+        let size = self.areas.size();
+        let ratios: Vec<Image<u32>> = (1..RADII.len()).map(|level| self.ratios(level)).collect();
+        Image::from_fn(size, |x, y| self.gather_at(x, y, &ratios))
+    }
+
+    /// The test of noise of a level at each of its places: each pixel up to radius 4, from there on every
+    /// second of every second row; in 2^-13.
+    #[must_use]
+    pub fn ratios(&self, level: usize) -> Image<u32> {
+        let step = step_of(level);
+        let size = self.areas.size().map(|side| side.div_ceil(step));
+        Image::from_fn(size, |x, y| self.ratio(step * x, step * y, level))
+    }
+
+    fn ratio(&self, x: u32, y: u32, level: usize) -> u32 {
+        let [fine, coarse] = [level - 1, level].map(|level| self.held(self.box_at(x, y, RADII[level])));
+        let [a, b] = [level - 1, level].map(|level| (f64::from(RADII[level]) + 0.5).powi(2));
+        let limit = 1.0 + (b - a) / (b + a);
+        let ratio = if self.areas.at(x, y) == 0 || coarse.area <= fine.area || fine.area <= 0.0 {
+            1.0
+        } else {
+            let mean = |held: Held| held.flux.iter().sum::<f64>() / 3.0 / held.area;
+            let square = self.square_unit * (coarse.squares + self.usual_square);
+            let variance = square / coarse.area * (1.0 / fine.area - 1.0 / coarse.area);
+            ((mean(coarse) - mean(fine)).powi(2) / variance).min(MOST) / limit
+        };
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most 6 in 2^-13")]
+        let whole = (ratio / RATIO_UNIT + 0.5) as u32;
+        whole
+    }
+
+    fn gather_at(&self, x: u32, y: u32, ratios: &[Image<u32>]) -> Gathered {
+        if self.areas.at(x, y) == 0 {
+            return Gathered::default();
+        }
+        let light = |radius| {
+            let held = self.held(self.box_at(x, y, radius));
+            held.flux.map(|flux| flux / held.area)
+        };
+        let mut found = Gathered { light: light(0), radius: 0.0 };
+        let mut share = 1.0_f64;
+        for level in 1..RADII.len() {
+            let ratio = self.pooled(x, y, level, &ratios[level - 1]);
+            share = share.min(((1.0 + SOFT - ratio) / (2.0 * SOFT)).clamp(0.0, 1.0));
+            if share == 0.0 {
+                break;
+            }
+            let (wider, radius) = (light(RADII[level]), f64::from(RADII[level]));
+            found.radius += share * (radius - found.radius);
+            for (light, wider) in found.light.iter_mut().zip(wider) {
+                *light += share * (wider - *light);
+            }
+        }
+        found
+    }
+
+    /// The mean ratio of a level around a pixel.
+    fn pooled(&self, x: u32, y: u32, level: usize, ratios: &Image<u32>) -> f64 {
+        let step = step_of(level);
+        let Inside { lo, hi } = self.box_at(x, y, POOL * RADII[level]);
+        let columns = lo.x.div_ceil(step)..=hi.x / step;
+        let rows = lo.y.div_ceil(step)..=hi.y / step;
+        let (mut sum, mut count) = (0_u64, 0_u32);
+        for y in rows {
+            for x in columns.clone() {
+                sum += u64::from(ratios.at(x, y));
+                count += 1;
+            }
+        }
+        if count == 0 {
+            (sum, count) = (ratios.at(x / step, y / step).into(), 1);
+        }
+        #[expect(clippy::cast_precision_loss, reason = "less than 2^32")]
+        let mean = sum as f64 * RATIO_UNIT / f64::from(count);
+        mean
+    }
+
+    /// The box of a radius, as far as the pixel's face goes along its row and column.
+    fn box_at(&self, x: u32, y: u32, radius: u32) -> Inside {
+        let [left, right, down, up] = self.extents.at(x, y).map(|extent| u32::from(extent).min(radius));
+        Inside { lo: glam::UVec2::new(x - left, y - down), hi: glam::UVec2::new(x + right, y + up) }
+    }
+
+    #[expect(clippy::cast_precision_loss, reason = "less than 2^32")]
+    fn held(&self, Inside { lo, hi }: Inside) -> Held {
+        let (mut flux, mut area) = ([0_u64; 4], 0_u64);
+        for y in lo.y..=hi.y {
+            for x in lo.x..=hi.x {
+                area += u64::from(self.areas.at(x, y));
+                for (sum, units) in flux.iter_mut().zip(self.flux.at(x, y)) {
+                    *sum += u64::from(units);
+                }
+            }
+        }
+        let [red, green, blue, squares] = flux.map(|sum| sum as f64);
+        Held { flux: [red, green, blue], squares, area: area as f64 }
+    }
+}
+
+/// Pixels from one test to the next.
+fn step_of(level: usize) -> u32 {
+    if RADII[level] <= 4 { 1 } else { 2 }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,107 @@
+//! Light whose truth is known: even, steps, ramps and lines, with photons enough that noise decides nothing,
+//! or with the noise of Poisson.
+
+use glam::UVec2;
+
+use super::{Gathered, Tables};
+use crate::image::Image;
+
+const SIZE: UVec2 = UVec2::new(40, 24);
+
+/// One face over the whole map, where pixel (x, y) has `photons(x, y)` photons of 100 units each.
+fn tables(photons: impl Fn(u32, u32) -> u32) -> Tables {
+    let extent = |length: u32| u8::try_from(length.min(128)).unwrap();
+    Tables {
+        areas: Image::filled(SIZE, 1000),
+        flux: Image::from_fn(SIZE, |x, y| [100 * photons(x, y), 200 * photons(x, y), 0, photons(x, y)]),
+        extents: Image::from_fn(SIZE, |x, y| {
+            [extent(x), extent(SIZE.x - 1 - x), extent(y), extent(SIZE.y - 1 - y)]
+        }),
+        square_unit: 10_000.0,
+        usual_square: 1.0,
+    }
+}
+
+/// Whole numbers that scatter as photons do, by a generator of 64 bits (PCG-like), with a mean of 8.
+fn scattered(seed: u64) -> impl Fn(u32, u32) -> u32 {
+    move |x, y| {
+        let mut state = seed ^ (u64::from(x) << 32 | u64::from(y));
+        (0..16)
+            .map(|_| {
+                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+                u32::from((state >> 40) & 1 == 1)
+            })
+            .sum::<u32>()
+    }
+}
+
+fn at(found: &Image<Gathered>, x: u32, y: u32) -> Gathered {
+    found.at(x, y)
+}
+
+#[test]
+fn even_light_is_gathered_from_the_widest_boxes() {
+    let found = tables(|_, _| 7).gather();
+    assert!(found.values().iter().all(|pixel| pixel.radius == 64.0), "{:?}", at(&found, 0, 0));
+    // 700 units over 1000, and twice that.
+    assert!(found.values().iter().all(|pixel| pixel.light == [0.7, 1.4, 0.0]));
+}
+
+#[test]
+fn noise_is_averaged_away() {
+    let found = tables(scattered(1)).gather();
+    let errors = found.values().iter().map(|pixel| (pixel.light[0] - 0.8).powi(2));
+    let rmse = (errors.sum::<f64>() / f64::from(SIZE.element_product())).sqrt();
+    // A pixel alone is off by a quarter of 0.8.
+    assert!(rmse < 0.02, "{rmse}");
+}
+
+#[test]
+fn a_step_keeps_its_edge() {
+    let found = tables(|x, _| if x < 20 { 1000 } else { 10_000 }).gather();
+    for (x, light) in [(0, 100.0), (10, 100.0), (18, 100.0), (21, 1000.0), (39, 1000.0)] {
+        let pixel = at(&found, x, 12);
+        assert!((pixel.light[0] / light - 1.0).abs() < 1e-2, "{x}: {pixel:?}");
+    }
+    assert_eq!(at(&found, 19, 12).radius, 0.0);
+    assert!(at(&found, 2, 12).radius > 4.0, "{:?}", at(&found, 2, 12));
+}
+
+#[test]
+fn a_ramp_keeps_its_slope() {
+    let found = tables(|x, _| 1000 + 500 * x).gather();
+    for x in 8..32 {
+        let (light, truth) = (at(&found, x, 12).light[0], 100.0 + 50.0 * f64::from(x));
+        assert!((light / truth - 1.0).abs() < 0.02, "{x}: {light} for {truth}");
+    }
+}
+
+#[test]
+fn a_line_keeps_its_width() {
+    let found = tables(|x, _| if x == 20 { 100_000 } else { 1000 }).gather();
+    let row: Vec<f64> = (17..24).map(|x| at(&found, x, 12).light[0].round()).collect();
+    assert_eq!(row, [100.0, 100.0, 100.0, 10_000.0, 100.0, 100.0, 100.0]);
+}
+
+#[test]
+fn boxes_end_where_the_face_ends() {
+    let mut given = tables(|x, _| if x < 20 { 5 } else { 6 });
+    // Two faces that differ by less than noise.
+    given.extents = Image::from_fn(SIZE, |x, y| {
+        let [left, right, down, up] = given.extents.at(x, y);
+        let [near, far] = if x < 20 { [left, right - 20] } else { [left - 20, right] };
+        [near, far, down, up]
+    });
+    let found = given.gather();
+    assert_eq!([at(&found, 19, 3).light[0], at(&found, 20, 3).light[0]], [0.5, 0.6]);
+}
+
+#[test]
+fn what_is_not_lit_is_dark_and_nothing_is_no_number() {
+    let mut given = tables(|_, _| 0);
+    given.areas = Image::from_fn(SIZE, |x, y| if x == y { 0 } else { 1000 });
+    given.extents = Image::filled(SIZE, [0; 4]);
+    assert!(given.gather().values().iter().all(|pixel| pixel.light == [0.0; 3]));
+    let empty = Tables { extents: tables(|_, _| 0).extents, ..given };
+    assert!(empty.gather().values().iter().all(|pixel| pixel.light == [0.0; 3]));
+}
