@@ -224,7 +224,7 @@ mod tests {
             up: [0.0, 1.0, 0.0],
             vertical_fov_degrees: 39.3,
         };
-        let saved = Choices { exposure: Some(0.1), camera: Some(camera), ..choices() };
+        let saved = Choices { exposure: Some(0.1), camera: Some(camera), bounces: None, ..choices() };
         saved.save(&path, "a command".to_owned()).expect("saved");
         assert_eq!(Choices::load(&path).expect("loaded"), saved);
         fs::write(&path, "{}").expect("written");
@@ -239,6 +239,8 @@ mod tests {
             "varikernel render cornell-glass -o picture.exr --size 64x48 --photons 5000 -n 50 -r 16 --kernel \
              cone --bounces 8 --seed 1"
         );
+        choices.bounces = None;
+        assert!(!choices.command(5000, false).contains("bounces"), "photons are followed to their end");
         choices.source = "it's a map.exr".to_owned();
         assert_eq!(
             choices.command(0, true),
