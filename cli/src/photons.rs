@@ -8,7 +8,9 @@ use anyhow::{Context as _, Result, bail};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 use varikernel::image::write_atomically;
-use varikernel::photon::{self, Emission, Ends, Landings, PhotonFormat, Tally, TraceSettings};
+use varikernel::photon::{
+    self, Emission, Ends, Landings, MAX_BOUNCES, PhotonFormat, ROULETTE_AFTER, Tally, TraceSettings,
+};
 use varikernel::scene::Scene;
 
 use super::numbers::{whole, whole_checked_later};
@@ -36,17 +38,17 @@ pub(crate) struct Args {
     #[arg(value_parser = parse_count, allow_negative_numbers = true)]
     photons: u32,
 
-    /// Diffuse landings after which a photon is followed no further.
-    #[arg(long, default_value_t = 8, value_name = "NUMBER", value_parser = whole_checked_later(1..=u32::MAX))]
+    #[arg(help = bounces_help())]
+    #[arg(long, value_name = "NUMBER", value_parser = whole_checked_later(1..=u32::MAX))]
     #[arg(allow_negative_numbers = true)]
-    bounces: u32,
+    bounces: Option<u32>,
 
     /// A whole number; the same seed gives the same photons.
     #[arg(long, default_value_t = 1, value_parser = whole(0..=u64::MAX), allow_negative_numbers = true)]
     seed: u64,
 
-    /// End photons by chance, in proportion to what a surface absorbs, instead of dimming them; the mean is
-    /// the same.
+    /// End photons by chance at every landing, in proportion to what a surface absorbs, instead of dimming
+    /// them; the mean is the same.
     #[arg(long)]
     russian_roulette: bool,
 
@@ -201,6 +203,14 @@ fn print(report: &Report<'_>) -> Result<()> {
         facts.push(("written", path.display().to_string()));
     }
     output::print_facts(&facts)
+}
+
+/// What `--bounces` does, and what is done without it.
+pub(super) fn bounces_help() -> String {
+    format!(
+        "Diffuse landings after which a photon is followed no further [default: none: it is followed to its \
+         end, after {ROULETTE_AFTER} landings by Russian roulette, at the latest after {MAX_BOUNCES}]"
+    )
 }
 
 /// 1000, 1_000 or 1e3.

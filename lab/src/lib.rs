@@ -36,5 +36,9 @@ pub use picture::{LightError, PictureError};
 pub use statistics::Statistics;
 pub use summary::{RadiusSummary, total_photons};
 
+/// Diffuse landings after which photons of benchmarks and studies are followed no further: committed results
+/// have this many.
+const BOUNCES: u32 = 8;
+
 /// The commit that this was built from, where git had one.
 pub const COMMIT: &str = env!("VARIKERNEL_COMMIT");

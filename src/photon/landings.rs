@@ -15,7 +15,7 @@ pub struct Ends {
     pub left: u64,
     /// They are absorbed: by a black surface, or by Russian roulette.
     pub absorbed: u64,
-    /// They have landed as often as was asked for.
+    /// They have landed as often as was asked for, or else [`super::MAX_BOUNCES`] times.
     pub bounces_used: u64,
     /// They met mirrors and glass [`super::MAX_SPECULAR`] times without a landing, and were given up.
     pub given_up: u64,
@@ -34,7 +34,7 @@ pub struct Tally {
     counts: Vec<Vec<u64>>,
     /// Power before absorption by bounce, linear RGB.
     flux: Vec<DVec3>,
-    /// Power that would have gone on after the last landing that was asked for, linear RGB.
+    /// Power that would have gone on where photons were followed no further, linear RGB.
     cut_off: DVec3,
 }
 
@@ -50,8 +50,8 @@ pub struct Landings {
     /// For k = 0, 1, 2, ...: the share of the emitted power that arrives at the k-th diffuse landing, before
     /// absorption, linear RGB; 0 for a colour that is not emitted.
     pub flux: Vec<[f64; 3]>,
-    /// The share of the emitted power that reflection would have sent on after the last landing that was
-    /// asked for, linear RGB.
+    /// The share of the emitted power that would have gone on where photons were followed no further: after
+    /// their last landing, or between mirrors and glass; linear RGB.
     pub cut_off: [f64; 3],
 }
 
@@ -77,9 +77,15 @@ impl Tally {
         self.flux[bounce] += photon.power.as_dvec3();
     }
 
-    /// Ends a photon that has landed as often as was asked for, and would have gone on with `power`.
+    /// Ends a photon that has landed as often as it may, and would have gone on with `power`.
     pub(super) fn cut_off(&mut self, power: Vec3) {
         self.ends.bounces_used += 1;
+        self.cut_off += power.as_dvec3();
+    }
+
+    /// Ends a photon that goes to and fro between mirrors and glass with `power`.
+    pub(super) fn give_up(&mut self, power: Vec3) {
+        self.ends.given_up += 1;
         self.cut_off += power.as_dvec3();
     }
 
@@ -111,9 +117,9 @@ impl Tally {
         self.emitted
     }
 
-    /// Power that reflection would have sent on after the last landing that was asked for, linear RGB: light
-    /// that is missing. The sum of the light that it would have brought is larger, as each further landing
-    /// brings it again.
+    /// Power that would have gone on where photons were followed no further, linear RGB: after their last
+    /// landing, or between mirrors and glass. This light is missing, and what it would have brought at
+    /// further landings.
     #[must_use]
     pub fn power_cut_off(&self) -> DVec3 {
         self.cut_off
@@ -125,7 +131,8 @@ impl Tally {
         self.counts.iter().flatten().sum()
     }
 
-    /// As shares, for every bounce that was asked for and every surface with a diffuse part.
+    /// As shares, for every bounce that was asked for, or else that was seen, and every surface with a diffuse
+    /// part.
     #[must_use]
     #[expect(clippy::cast_precision_loss, reason = "counts are below 2^53")]
     pub fn landings(&self, scene: &Scene, emission: &Emission<'_>) -> Landings {
@@ -140,7 +147,7 @@ impl Tally {
 
         let emitted = self.emitted;
         let share = |part: f64, whole: f64| if whole > 0.0 { part / whole } else { 0.0 };
-        let bounces = 0..emission.settings().bounces as usize;
+        let bounces = 0..emission.settings().bounces.map_or(self.counts.len(), |bounces| bounces as usize);
         let on_surfaces = |bounce: usize| {
             let count =
                 |surface: usize| self.counts.get(bounce).and_then(|counts| counts.get(surface)).copied();

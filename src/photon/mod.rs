@@ -23,6 +23,8 @@ mod random;
 #[cfg(feature = "scene")]
 mod records;
 #[cfg(feature = "scene")]
+mod roulette;
+#[cfg(feature = "scene")]
 mod scatter;
 #[cfg(feature = "scene")]
 mod trace_settings;
@@ -42,6 +44,8 @@ pub use output::write;
 #[cfg(feature = "scene")]
 pub use path::MAX_SPECULAR;
 pub use point::PhotonPoint;
+#[cfg(feature = "scene")]
+pub use roulette::{MAX_BOUNCES, ROULETTE_AFTER};
 #[cfg(feature = "scene")]
 pub(crate) use scatter::mirrored;
 #[cfg(feature = "scene")]

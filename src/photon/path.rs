@@ -4,6 +4,7 @@ use glam::{DVec3, Vec3};
 
 use super::direction::cosine_around;
 use super::random::{Purpose, Stream};
+use super::roulette::{MAX_BOUNCES, survives};
 use super::scatter::{mirrored, reflected_by_pane, refract};
 use super::{EmittedPhoton, Photon, Tally, TraceSettings};
 use crate::scene::{Hit, Ray, Scattering, Scene};
@@ -28,6 +29,7 @@ pub(super) fn follow(
     let origin = emitted.origin.as_dvec3();
     let mut ray = Ray { origin, direction: emitted.direction.as_dvec3().normalize() };
     let mut power = emitted.power;
+    let most = settings.bounces.unwrap_or(MAX_BOUNCES);
     let (mut bounce, mut specular, mut through_glass) = (0, 0, false);
     let mut known = first_primitive;
     loop {
@@ -54,12 +56,11 @@ pub(super) fn follow(
                 landings.push(photon);
                 tally.add(&photon);
                 (bounce, specular) = (bounce + 1, 0);
-                if bounce == settings.bounces {
+                if bounce == most {
                     tally.cut_off(power * reflectance);
                     return;
                 }
-                power *= reflectance;
-                if !survives(settings, reflectance, &mut power, &mut random) {
+                if !survives(settings, bounce, reflectance, emitted.power, &mut power, &mut random) {
                     tally.ends.absorbed += 1;
                     return;
                 }
@@ -102,23 +103,11 @@ pub(super) fn follow(
             }
         };
         if specular == MAX_SPECULAR {
-            tally.ends.given_up += 1;
+            tally.give_up(power);
             return;
         }
         ray = Ray { origin: scene.start(hit.position, onward), direction };
     }
-}
-
-/// Whether a photon goes on after a landing; by Russian roulette, the survivors get the power of the others.
-fn survives(settings: &TraceSettings, reflectance: Vec3, power: &mut Vec3, random: &mut Stream) -> bool {
-    if settings.russian_roulette {
-        let chance = reflectance.max_element();
-        if random.number() >= f64::from(chance) {
-            return false;
-        }
-        *power /= chance;
-    }
-    *power != Vec3::ZERO
 }
 
 /// The direction behind glass, or nothing by chance for Fresnel's share, and where all light is reflected.

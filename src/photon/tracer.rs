@@ -11,7 +11,7 @@ use crate::scene::Scene;
 
 /// Photons that one thread follows at a time.
 const CHUNK: u32 = 1 << 11;
-/// Photons whose landings are in memory at a time, 480 bytes each with 8 bounces.
+/// Photons whose landings are in memory at a time, 64 bytes each.
 const BATCH: u32 = 1 << 16;
 
 /// Landings of consecutive photons.

@@ -25,9 +25,9 @@ pub struct Account {
     pub power_out: [f64; 3],
     /// Fragments that the splat drew; photons that the gather found.
     pub fragments: f64,
-    /// Share of the lights' power that reflection would have sent on after the last landing that was asked
-    /// for: light that the picture lacks, and what it would have brought at further landings. Mean of the
-    /// three colours; 0 for photons that the caller traced.
+    /// Share of the photons' power, its three colours added up, that would have gone on where they were
+    /// followed no further: light that the picture lacks, and what it would have brought at further landings.
+    /// 0 for photons that the caller traced.
     pub cut_off_share: f64,
     /// Share of pixels on diffuse surfaces whose search MR ended; 0 with a fixed radius, which asks for no
     /// search.

@@ -28,6 +28,8 @@ pub struct Reference {
     light: TracedLight,
     bent: Vec<Place>,
     seeds: u32,
+    /// Of all seeds.
+    cut_off_shares: f64,
     /// Power of all photons of each pixel, and their count.
     power: Image<[f64; 4]>,
     seen_through: Image<[f64; 4]>,
@@ -53,6 +55,7 @@ impl Reference {
             light,
             bent,
             seeds: 0,
+            cut_off_shares: 0.0,
             power: Image::filled(settings.size, [0.0; 4]),
             seen_through: Image::filled(settings.size, [0.0; 4]),
         })
@@ -87,7 +90,14 @@ impl Reference {
         let through = seen_through(&view, &self.bent, traced.grid.as_ref(), Wanted::Fixed(0), Kernel::Box);
         add_up(&mut self.seen_through, &through);
         self.seeds += 1;
+        self.cut_off_shares += traced.cut_off_share;
         Ok(())
+    }
+
+    /// As [`Account::cut_off_share`](super::Account::cut_off_share), the mean of the seeds; 0 before the first.
+    #[must_use]
+    pub fn cut_off_share(&self) -> f64 {
+        self.cut_off_shares / f64::from(self.seeds.max(1))
     }
 
     /// The mean of the seeds; radii are 0, as there are no kernels.

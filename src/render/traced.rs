@@ -20,7 +20,7 @@ const UPLOAD: usize = 1 << 20;
 pub(super) struct Traced {
     pub(super) emitted: u32,
     pub(super) landings: u64,
-    /// Share of the photons' power that would have gone on after the last landing.
+    /// Share of the photons' power that would have gone on where they were followed no further.
     pub(super) cut_off_share: f64,
     /// Those that may be seen, on the GPU.
     pub(super) points: PhotonPoints,

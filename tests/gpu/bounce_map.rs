@@ -11,7 +11,7 @@ use crate::support::egl;
 const PHOTONS: u32 = 60_000;
 
 fn trace_settings(seed: u64) -> TraceSettings {
-    TraceSettings { photons: PHOTONS, bounces: 3, seed, ..TraceSettings::default() }
+    TraceSettings { photons: PHOTONS, bounces: Some(3), seed, ..TraceSettings::default() }
 }
 
 fn ray_of(hit: &FirstHit) -> Ray {

@@ -60,12 +60,8 @@ fn one_step_has_the_indirect_light_of_the_renderer_to_the_last_bit() {
         let mut settings = settings(&scene);
         settings.irradiance.radius = radius;
         let live = after(&gl, &scene, settings, 1);
-        let trace_settings = TraceSettings {
-            photons: settings.photons_per_step,
-            bounces: 8,
-            seed: 1,
-            russian_roulette: false,
-        };
+        let trace_settings =
+            TraceSettings { photons: settings.photons_per_step, seed: 1, ..TraceSettings::default() };
         let (photons, _) = trace(&scene, &Emission::new(&scene, &trace_settings).unwrap());
         let photons: Vec<_> =
             photons.iter().filter(|photon| !photon.is_direct()).map(PhotonPoint::new).collect();

@@ -126,7 +126,7 @@ fn sixteen_times_the_photons_bring_it_nearer_to_the_reference() {
     let gl = egl();
     let scene = Scene::shipped("cornell-empty").unwrap();
     let settings = settings(32, Kernel::Epanechnikov, KernelRadius::Variable);
-    let trace = |photons, seed| TraceSettings { photons, bounces: 3, seed, ..TraceSettings::default() };
+    let trace = |photons, seed| TraceSettings { photons, bounces: Some(3), seed, ..TraceSettings::default() };
     let picture = |settings: &PictureSettings, photons, seed| {
         let mut renderer = Renderer::new(&gl, &scene, settings, &trace(photons, seed), &mut |_| ()).unwrap();
         renderer.picture(settings).unwrap().0.indirect

@@ -65,7 +65,7 @@ pub(crate) fn photon_at(scene: &Scene, view: &View, x: u32, y: u32, power: f32) 
 
 /// The indirect photons of a scene.
 pub(crate) fn traced(scene: &Scene, photons: u32, seed: u64) -> Vec<PhotonPoint> {
-    let settings = TraceSettings { photons, bounces: 4, seed, ..TraceSettings::default() };
+    let settings = TraceSettings { photons, bounces: Some(4), seed, ..TraceSettings::default() };
     let emission = Emission::new(scene, &settings).unwrap();
     let (photons, _) = trace(scene, &emission);
     photons.iter().filter(|photon| !photon.is_direct()).map(PhotonPoint::new).collect()

@@ -126,7 +126,7 @@ fn square(height: f64) -> String {
 
 /// Power that lands on the floor, and how many photons do.
 fn lands(scene: &Scene) -> (f64, usize) {
-    let (photons, _) = traced(scene, &TraceSettings { bounces: 1, ..settings(4000) });
+    let (photons, _) = traced(scene, &TraceSettings { bounces: Some(1), ..settings(4000) });
     let floor = photons.iter().filter(|photon| photon.position.y.abs() < 1e-3);
     (floor.clone().map(|photon| f64::from(photon.power.x)).sum(), floor.count())
 }
@@ -161,7 +161,7 @@ fn a_light_that_is_far_aims_at_the_scene_with_the_power_that_goes_there() {
             );
             assert!((power / expected - 1.0).abs() < 0.05, "{power} instead of {expected}: {light}");
             // However far, no two land at one place.
-            let (photons, tally) = traced(&scene, &TraceSettings { bounces: 1, ..settings(4000) });
+            let (photons, tally) = traced(&scene, &TraceSettings { bounces: Some(1), ..settings(4000) });
             let places: std::collections::BTreeSet<_> =
                 photons.iter().map(|photon| photon.position.to_array().map(f32::to_bits)).collect();
             assert!(places.len() + 5 > photons.len(), "{} of {}: {light}", places.len(), photons.len());
@@ -242,7 +242,7 @@ spheres = [{ centre = [0, 0, 0], radius = 1 }]
 ";
     let scene = load(text).unwrap();
     for (bounces, left) in [(1, 0.9), (8, 0.430_467_21)] {
-        let settings = TraceSettings { bounces, ..settings(500) };
+        let settings = TraceSettings { bounces: Some(bounces), ..settings(500) };
         let (_, tally) = traced(&scene, &settings);
         let share = tally.power_cut_off() / (4.0 * PI * DVec3::new(1.0, 2.0, 3.0));
         assert!((share - left).abs().max_element() < 1e-5, "{share}");

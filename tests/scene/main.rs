@@ -14,6 +14,7 @@ mod mtl;
 mod obj;
 mod optics;
 mod physics;
+mod roulette;
 mod shapes;
 mod smooth;
 mod tracing;

@@ -59,7 +59,7 @@ fn beam(surfaces: &str) -> Vec<Photon> {
         ) + "glass = { dielectric = 1.5 }\nsilver = { mirror = [0.9, 0.8, 0.7] }\n"
     );
     let scene = load(&text).unwrap();
-    traced(&scene, &TraceSettings { photons: 20_000, bounces: 1, ..TraceSettings::default() }).0
+    traced(&scene, &TraceSettings { photons: 20_000, bounces: Some(1), ..TraceSettings::default() }).0
 }
 
 const FLOOR: &str = "[surfaces.floor]\nmaterial = \"white\"\n\

@@ -7,7 +7,7 @@ use rand::{RngExt as _, SeedableRng as _};
 use rand_pcg::Pcg64;
 use serde_json::Value;
 use varikernel::glam::{DVec3, Vec3};
-use varikernel::photon::Photon;
+use varikernel::photon::{Photon, TraceSettings};
 use varikernel::scene::Scene;
 
 use crate::{load, settings, shipped_text, traced};
@@ -239,7 +239,7 @@ fn the_map_of_another_renderer_has_the_same_number_of_landings() {
     // 3,730,881 of 10^6 photons, with a deviation of about 2.9 √10^6 on that side (assets/maps/README.md).
     let scene = Scene::shipped("cornell-glass").unwrap();
     let emitted = 200_000;
-    let (photons, _) = traced(&scene, &settings(emitted));
+    let (photons, _) = traced(&scene, &TraceSettings { bounces: Some(8), ..settings(emitted) });
     let per_photon = photons.len() as f64 / f64::from(emitted);
     let deviation = 2.9 * (1e-6 + 1.0 / f64::from(emitted)).sqrt();
     assert!((per_photon - 3.730_881).abs() < TOLERANCE * deviation, "{per_photon}");

@@ -130,7 +130,7 @@ fn starts_are_even_on_the_lamp_and_follow_lambert() {
 #[test]
 fn russian_roulette_has_the_same_mean() {
     let scene = Scene::shipped("cornell-boxes").unwrap();
-    let plain = settings(100_000);
+    let plain = TraceSettings { bounces: Some(8), ..settings(100_000) };
     let roulette = TraceSettings { russian_roulette: true, ..plain };
     let flux = |settings: &TraceSettings| {
         let (photons, tally) = traced(&scene, settings);
@@ -167,7 +167,7 @@ fn settings_and_lights_that_can_not_be_are_refused() {
     let scene = Scene::shipped("cornell-empty").unwrap();
     let message = |scene: &Scene, settings| Emission::new(scene, &settings).unwrap_err().to_string();
     assert!(message(&scene, settings(0)).contains("photons = 0 is not possible"));
-    let no_bounces = TraceSettings { bounces: 0, ..settings(1) };
+    let no_bounces = TraceSettings { bounces: Some(0), ..settings(1) };
     assert!(message(&scene, no_bounces).contains("bounces = 0 is not possible"));
     let dark = load(&shipped_text("cornell_empty.toml").replace("[17.0, 12.0, 4.0]", "[0, 0, 0]")).unwrap();
     assert!(message(&dark, settings(10)).contains("no light of the scene shines"));

@@ -50,13 +50,15 @@ pub(super) fn reference_attributes(args: &Args, scene: &str, seeds: u32) -> Vec<
 
 fn common(args: &Args, scene: &str) -> Vec<Attribute> {
     let source = &args.source;
-    vec![
+    let bounces = source.bounces.map(|bounces| Attribute::integer("varikernel.bounces", bounces));
+    let mut attributes = vec![
         Attribute::text("varikernel.scene", scene),
         Attribute::integer("varikernel.photons", source.photons),
-        Attribute::integer("varikernel.bounces", source.bounces),
         Attribute::text("varikernel.seed", source.seed.to_string()),
         Attribute::text("varikernel.direct", format!("{:?}", args.direct)),
         Attribute::integer("varikernel.light_samples", source.light_samples),
         Attribute::text("varikernel.version", env!("CARGO_PKG_VERSION")),
-    ]
+    ];
+    attributes.extend(bounces);
+    attributes
 }

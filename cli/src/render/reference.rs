@@ -10,6 +10,7 @@ use varikernel::scene::Scene;
 use varikernel::settings::PictureSettings;
 
 use super::files::{reference_attributes, write};
+use super::report::cut_off;
 use super::{Args, Bar};
 use crate::saving::{Autosave, Resume, how_to_go_on};
 use crate::words::in_words_of_options;
@@ -57,12 +58,14 @@ pub(super) fn render(
             "output": args.output,
             "photons": trace,
             "reference_seeds": seeds,
+            "cut_off_share": reference.cut_off_share(),
         });
         output::print_json(&report)?;
     } else {
         output::print_facts(&[
             ("scene", scene.title.clone()),
             ("reference", format!("{seeds} seeds of {} photons", trace.photons)),
+            ("cut off", cut_off(reference.cut_off_share(), trace.bounces)),
             ("written", args.output.display().to_string()),
         ])?;
     }

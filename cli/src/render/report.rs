@@ -5,7 +5,7 @@ use std::path::Path;
 use anyhow::Result;
 use serde::Serialize;
 use varikernel::gl::DeviceInfo;
-use varikernel::photon::TraceSettings;
+use varikernel::photon::{MAX_BOUNCES, MAX_SPECULAR, TraceSettings};
 use varikernel::render::Account;
 use varikernel::settings::{KernelRadius, PictureSettings};
 
@@ -46,20 +46,25 @@ pub(super) fn print(report: &Report<'_>) -> Result<()> {
         facts
             .push(("limited", format!("{:.3} % of the pixels found too few photons", 100.0 * limited_share)));
     }
-    if cut_off_share >= 0.0005 {
-        let share = 100.0 * cut_off_share;
-        let landings = report.photons.bounces;
-        facts.push((
-            "cut off",
-            format!("{share:.1} % of the power after {landings} landings; --bounces takes more"),
-        ));
-    }
     facts.extend([
+        ("cut off", cut_off(cut_off_share, report.photons.bounces)),
         ("energy", format!("kept to {:.1e}", report.energy_error)),
         ("time", format!("{:.1} s", report.seconds)),
         ("written", report.output.display().to_string()),
     ]);
     output::print_facts(&facts)
+}
+
+/// How much of the photons' power was followed no further, and why.
+pub(super) fn cut_off(share: f64, bounces: Option<u32>) -> String {
+    let words = format!("{:.3} % of the power", 100.0 * share);
+    match bounces {
+        Some(bounces) => format!("{words}, after {bounces} landings; less without --bounces"),
+        None if share > 0.0 => {
+            format!("{words}, after {MAX_BOUNCES} landings, or {MAX_SPECULAR} mirrors in a row")
+        }
+        None => words,
+    }
 }
 
 #[expect(clippy::cast_precision_loss, reason = "counts are below 2^53")]

@@ -11,7 +11,7 @@ use varikernel::photon::TraceSettings;
 use varikernel::settings::{Kernel, MAX_PICTURE_RADIUS, PictureSettings};
 
 use crate::numbers::{fraction, whole, whole_checked_later};
-use crate::photons::parse_count;
+use crate::photons::{bounces_help, parse_count};
 use crate::synth::parse_size;
 
 /// What is rendered, and with how many photons; `figures` takes the same.
@@ -32,11 +32,11 @@ pub(crate) struct Source {
     #[arg(help_heading = "Photons")]
     pub(crate) photons: u32,
 
-    /// Diffuse landings after which a photon is followed no further.
-    #[arg(long, default_value_t = 8, value_name = "NUMBER", value_parser = whole_checked_later(1..=u32::MAX))]
+    #[arg(help = bounces_help())]
+    #[arg(long, value_name = "NUMBER", value_parser = whole_checked_later(1..=u32::MAX))]
     #[arg(allow_negative_numbers = true)]
     #[arg(help_heading = "Photons")]
-    pub(crate) bounces: u32,
+    pub(crate) bounces: Option<u32>,
 
     /// A whole number; the same seed gives the same picture.
     #[arg(long, default_value_t = 1, value_parser = whole(0..=u64::MAX), allow_negative_numbers = true)]

@@ -223,7 +223,7 @@ fn choices(args: &Args) -> Result<Choices> {
         adapt: args.photons_per_frame.is_none(),
         frame_milliseconds: 100,
         photons: 50_000_000,
-        bounces: 8,
+        bounces: None,
         seed: args.seed,
         exposure: args.exposure,
         camera: None,

@@ -9,7 +9,7 @@ const FEW: &str = "--photons 500 --bounces 3";
 #[test]
 fn statistics_are_shares_by_bounce_and_surface() {
     let place = Workplace::new();
-    let report = place.json("photons -o a.npy --photons 2e4 --stats stats.json --json");
+    let report = place.json("photons -o a.npy --photons 2e4 --bounces 8 --stats stats.json --json");
     let stats: serde_json::Value = serde_json::from_slice(&place.bytes("stats.json")).unwrap();
     assert_eq!(report["stats"], stats);
     let keys: Vec<_> = stats.as_object().unwrap().keys().map(String::as_str).collect();
@@ -36,6 +36,21 @@ fn statistics_are_shares_by_bounce_and_surface() {
     assert!((total * 2e4 - report["landings"].as_f64().unwrap()).abs() < 1e-6);
     let ends = report["ends"].as_object().unwrap();
     assert_eq!(ends.values().map(|count| count.as_u64().unwrap()).sum::<u64>(), 20_000);
+}
+
+#[test]
+fn photons_are_followed_to_their_end_unless_landings_are_asked_for() {
+    let place = Workplace::new();
+    let traced = |options: &str| {
+        place.json(&format!("photons cornell-boxes --stats a.json --photons 2e4 --json {options}"))
+    };
+    let (all, eight) = (traced(""), traced("--bounces 8"));
+    assert_eq!(all["settings"]["bounces"], serde_json::Value::Null);
+    assert_eq!((&all["ends"]["bounces_used"], &all["stats"]["cut_off"][0]), (&0.into(), &0.0.into()));
+    assert_eq!(eight["settings"]["bounces"], 8);
+    assert!((0.004..0.008).contains(&eight["stats"]["cut_off"][0].as_f64().unwrap()), "{eight}");
+    let shares = |answer: &serde_json::Value| answer["stats"]["flux"].as_array().unwrap().clone();
+    assert!(shares(&all).len() > 8 && shares(&all)[..8] == shares(&eight)[..]);
 }
 
 /// The records of an NPY file: their number, the bytes of each, and the bytes of all.

@@ -88,6 +88,9 @@ fn an_exr_holds_every_layer_and_a_png_a_picture() {
     place.run(&format!("render -o c.exr {SMALL} --seed 2")).success();
     assert!(place.bytes("a.exr") != place.bytes("c.exr"), "another seed gives another");
 
+    assert!(answer["account"]["cut_off_share"].as_f64() == Some(0.0), "{answer}");
+    assert!(!attributes.contains_key("bounces"), "{attributes:?}");
+
     let facts = place.answer(&format!("render mirror-ring -o a.png {SMALL} --radius fixed:3 --kernel box"));
     assert!(facts.contains("energy") && facts.contains("a.png"), "{facts}");
     assert!(!facts.contains("limited"), "nothing is searched: {facts}");
@@ -95,6 +98,23 @@ fn an_exr_holds_every_layer_and_a_png_a_picture() {
     assert_eq!(picture.dimensions(), (40, 30));
     assert!(picture.pixels().any(|pixel| pixel.0 != [0; 3]));
     place.run(&format!("render cornell-boxes -o b.png {SMALL} --gather --count-correction")).success();
+}
+
+#[test]
+fn the_power_that_is_cut_off_is_always_told() {
+    let place = Workplace::new();
+    let answer = place.answer(&format!("render cornell-boxes -o a.exr {SMALL}"));
+    assert!(answer.contains("0.000 % of the power\n"), "{answer}");
+    for reference in ["", "--reference 2"] {
+        let options = format!("render cornell-boxes -o a.exr {SMALL} {reference} --bounces 2");
+        let answer = place.answer(&options);
+        assert!(answer.contains(" % of the power, after 2 landings; less without --bounces\n"), "{answer}");
+        let answer = place.json(&format!("{options} --json"));
+        let share = &answer[if reference.is_empty() { "account" } else { "cut_off_share" }];
+        let share = share.get("cut_off_share").unwrap_or(share).as_f64().unwrap();
+        assert!((0.2..0.4).contains(&share), "{answer}");
+    }
+    assert_eq!(attributes(&place, "a.exr")["bounces"], "I32(2)");
 }
 
 #[test]

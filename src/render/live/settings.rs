@@ -17,8 +17,9 @@ pub struct LiveSettings {
     pub camera: Camera,
     /// How photons become irradiance.
     pub irradiance: IrradianceSettings,
-    /// Diffuse landings after which a photon is followed no further, at least 1.
-    pub bounces: u32,
+    /// Diffuse landings after which a photon is followed no further, at least 1; without a number, it is
+    /// followed to its end, as [`TraceSettings::bounces`] says.
+    pub bounces: Option<u32>,
     /// Photons that leave the lights in a step, at least as many as there are lights.
     pub photons_per_step: u32,
     /// Places at which direct light is sampled in a step, each with one ray to each light; 0 for none after

@@ -45,7 +45,8 @@ pub(super) struct Choices {
     pub(super) frame_milliseconds: u32,
     /// Photons after which the picture is good enough.
     pub(super) photons: u64,
-    pub(super) bounces: u32,
+    /// Diffuse landings after which a photon is followed no further; nothing for its end.
+    pub(super) bounces: Option<u32>,
     pub(super) seed: u64,
     /// In stops; nothing for what suits the first picture.
     pub(super) exposure: Option<f32>,
@@ -135,13 +136,13 @@ impl Choices {
         } else {
             format!("--radius fixed:{}", self.fixed_radius)
         };
+        let bounces = self.bounces.map_or_else(String::new, |bounces| format!(" --bounces {bounces}"));
         let exposure = self.exposure.map_or_else(String::new, |stops| format!(" --exposure {stops:.2}"));
         format!(
             "varikernel render {source} -o picture.exr --size {width}x{height} --photons {} {radius} \
-             --kernel {} --bounces {} --seed {}{exposure}",
+             --kernel {}{bounces} --seed {}{exposure}",
             photons.max(1),
             word(self.kernel),
-            self.bounces,
             self.seed
         )
     }
@@ -194,7 +195,7 @@ mod tests {
             adapt: true,
             frame_milliseconds: 100,
             photons: 1_000_000,
-            bounces: 8,
+            bounces: Some(8),
             seed: 1,
             exposure: None,
             camera: None,
@@ -223,7 +224,7 @@ mod tests {
             up: [0.0, 1.0, 0.0],
             vertical_fov_degrees: 39.3,
         };
-        let saved = Choices { exposure: Some(0.1), camera: Some(camera), ..choices() };
+        let saved = Choices { exposure: Some(0.1), camera: Some(camera), bounces: None, ..choices() };
         saved.save(&path, "a command".to_owned()).expect("saved");
         assert_eq!(Choices::load(&path).expect("loaded"), saved);
         fs::write(&path, "{}").expect("written");
@@ -238,6 +239,8 @@ mod tests {
             "varikernel render cornell-glass -o picture.exr --size 64x48 --photons 5000 -n 50 -r 16 --kernel \
              cone --bounces 8 --seed 1"
         );
+        choices.bounces = None;
+        assert!(!choices.command(5000, false).contains("bounces"), "photons are followed to their end");
         choices.source = "it's a map.exr".to_owned();
         assert_eq!(
             choices.command(0, true),

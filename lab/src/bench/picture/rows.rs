@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use glam::UVec2;
 
+use crate::BOUNCES;
 use varikernel::error::{Error, Result};
 use varikernel::gl::{Gl, Sample, Timer};
 use varikernel::image::Image;
@@ -100,7 +101,7 @@ pub(super) struct Rows<'a> {
 
 impl<'a> Rows<'a> {
     pub(super) fn new(gl: &Gl, scene: &'a Scene, size: UVec2, photons: u32) -> Result<Self> {
-        let trace = TraceSettings { photons, ..TraceSettings::default() };
+        let trace = TraceSettings { photons, bounces: Some(BOUNCES), ..TraceSettings::default() };
         // Direct light is not timed.
         let settings = PictureSettings { size, light_samples: 1, ..PictureSettings::default() };
         let view = scene.view(size);

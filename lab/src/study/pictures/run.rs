@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::metric::Sweep;
 use super::studio::{Compared, Place, Studio};
 use super::{Found, Metric, PictureRow, PictureStudy, Width};
+use crate::BOUNCES;
 use crate::halves::ReferenceHalves;
 use crate::picture::PictureError;
 use varikernel::error::Result;
@@ -97,6 +98,7 @@ impl<'s> Run<'s> {
         let settings = study.settings(Width::Fixed { radius: 1 }, study.kernels[0]);
         let trace = |number: u32| TraceSettings {
             photons: study.reference_photons,
+            bounces: Some(BOUNCES),
             seed: REFERENCE_SEED + u64::from(number),
             ..TraceSettings::default()
         };
@@ -210,7 +212,12 @@ impl<'s> Run<'s> {
             }
         }
         for (width, kernel) in missing {
-            let trace = TraceSettings { photons: place.photons, seed, ..TraceSettings::default() };
+            let trace = TraceSettings {
+                photons: place.photons,
+                bounces: Some(BOUNCES),
+                seed,
+                russian_roulette: false,
+            };
             let studio = match studio {
                 Some(studio) => studio,
                 None => studio.insert(Studio::new(self.gl, self.study, place, &trace)?),
