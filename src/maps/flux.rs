@@ -57,7 +57,7 @@ fn power_of_two(least: f64) -> f32 {
     least.max(1e-37).log2().ceil().min(126.0).exp2() as f32
 }
 
-/// Power of each pixel's photons in units: red, green, blue, and squares of their mean.
+/// Power of each pixel's photons in units: red, green, blue, and squares of their sum.
 #[derive(Debug)]
 pub struct FluxMap {
     /// The lowest 8 bits of each photon, added up; GL_RGBA32F.

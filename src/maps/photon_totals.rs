@@ -11,7 +11,7 @@ pub struct PhotonTotals {
     pub count: u64,
     /// Sum of their power, linear RGB; not negative and finite.
     pub power: [f64; 3],
-    /// Sum of the squares of their power, the mean of the three colours.
+    /// Sum of the squares of their power, the three colours together.
     pub squares: f64,
 }
 
@@ -25,7 +25,7 @@ impl PhotonTotals {
             for (sum, power) in totals.power.iter_mut().zip(power.to_array()) {
                 *sum += power;
             }
-            totals.squares += (power.element_sum() / 3.0).powi(2);
+            totals.squares += power.element_sum().powi(2);
         }
         totals
     }
@@ -66,9 +66,9 @@ mod tests {
             ..PhotonPoint::zeroed()
         };
         let two = PhotonTotals::of(&[photon(1.0, 2.0, 3.0), photon(0.0, 0.0, 3.0)]);
-        assert_eq!(two, PhotonTotals { count: 2, power: [1.0, 2.0, 6.0], squares: 5.0 });
-        assert_eq!((two + two).squares, 10.0);
-        assert_eq!((two.mean_square(), PhotonTotals::default().mean_square()), (2.5, 0.0));
+        assert_eq!(two, PhotonTotals { count: 2, power: [1.0, 2.0, 6.0], squares: 45.0 });
+        assert_eq!((two + two).squares, 90.0);
+        assert_eq!((two.mean_square(), PhotonTotals::default().mean_square()), (22.5, 0.0));
         assert!(two.is_finite() && !PhotonTotals::of(&[photon(f32::NAN, 0.0, 0.0)]).is_finite());
     }
 }

@@ -37,4 +37,5 @@ mod stage_times;
 mod state;
 mod support;
 mod surfaces;
+mod tables;
 mod variations;

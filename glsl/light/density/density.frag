@@ -10,7 +10,7 @@ flat in vec3 power;
 // Photons of the pixel.
 layout(location = 0) out float count;
 #ifdef FLUX
-// Their power in units, red, green and blue, and squares of its mean: the lowest 8 bits of each photon.
+// Their power in units, red, green and blue, and squares of its sum: the lowest 8 bits of each photon.
 layout(location = 1) out vec4 low_bits;
 // The rest, in 256 units.
 layout(location = 2) out vec4 high_bits;

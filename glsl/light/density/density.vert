@@ -32,7 +32,9 @@ void main()
     ivec2 pixel = ivec2(floor(pixel_of(photon_position)));
     bool counts = contributes(pixel, surface_or_none(pixel));
 #ifdef FLUX
-    float root = dot(photon_power, vec3(1.0 / 3.0)) * units_of_root;
+    // To 12 bits, so that its square is exact, fused with what is added or not.
+    float sum = photon_power.r + photon_power.g + photon_power.b;
+    float root = uintBitsToFloat(floatBitsToUint(sum * units_of_root) & 0xFFFFF000u);
     vec4 exact = vec4(photon_power * units_of_power, root * root);
     // A negative power counts as none, and the units have room for the others.
     exact = min(max(exact, 0.0), 4294000000.0);

@@ -9,21 +9,24 @@ uniform usampler2DArray area_table;
 // Sums of the tests' ratios: of radii 1, 2 and 4 at each pixel, and of 8 to 64 at every second one.
 uniform usampler2DArray fine_tests;
 uniform usampler2DArray coarse_tests;
-// The unit of power.
-uniform float flux_unit;
+// Steps of one unit of power over one of area.
+uniform float steps_of_light;
 
-// Irradiance: red, green and blue, in power per square of a scene unit; a: radius in pixels.
-layout(location = 0) out vec4 irradiance_and_radius;
+// Light: red, green and blue, in units of power over those of area; a: radius in pixels.
+layout(location = 0) out vec4 light_and_radius;
+// The same light in whole steps; a: 1 where the pixel is lit.
+layout(location = 1) out uvec4 steps;
 
 // Between pure widths light is mixed: ratios this far from 1 decide all.
 const float SOFT = 0.4;
 // Tests are pooled over boxes that are so many times as wide.
 const int POOL = 2;
 
-vec3 light_in(ivec4 box)
+// a: whether there is any area.
+vec4 light_in(ivec4 box)
 {
     uint area = sum_of(area_table, box).r;
-    return area == 0u ? vec3(0.0) : vec3(sum_of(flux_table, box).rgb) / float(area);
+    return area == 0u ? vec4(0.0) : vec4(vec3(sum_of(flux_table, box).rgb) / float(area), 1.0);
 }
 
 // The mean ratio of the tests around a pixel.
@@ -51,7 +54,8 @@ float pooled(ivec2 pixel, ivec4 extent, int level)
 void main()
 {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
-    irradiance_and_radius = vec4(0.0);
+    light_and_radius = vec4(0.0);
+    steps = uvec4(0u);
     if (texelFetch(normal, pixel, 0).w <= 0.0) {
         return;
     }
@@ -60,7 +64,7 @@ void main()
     float share = 1.0;
     float radius = 0.0;
     int known = 0;
-    vec3 light = vec3(0.0);
+    vec4 light = vec4(0.0);
     bool is_found = false;
     for (int level = 0; level < 7 && share > 0.0; ++level) {
         int wider = 1 << level;
@@ -74,12 +78,19 @@ void main()
                 light = light_in(box_at(pixel, extent, known));
                 is_found = true;
             }
-            light = mix(light, light_in(box_at(pixel, extent, wider)), share);
-            radius = mix(radius, float(wider), share);
+            // Where there is nothing, what is wider is all there is.
+            float part = light.a == 0.0 ? 1.0 : share;
+            light = mix(light, light_in(box_at(pixel, extent, wider)), part);
+            radius = mix(radius, float(wider), part);
         }
     }
     if (!is_found) {
         light = light_in(box_at(pixel, extent, known));
     }
-    irradiance_and_radius = vec4(light * (flux_unit / area_unit()), radius);
+    for (int wider = max(2 * known, 1); light.a == 0.0 && wider <= 64; wider *= 2) {
+        light = light_in(box_at(pixel, extent, wider));
+        radius = float(wider);
+    }
+    light_and_radius = vec4(light.rgb, radius);
+    steps = uvec4(min(light.rgb * steps_of_light, float(MOST_STEPS)) + 0.5, 1u);
 }

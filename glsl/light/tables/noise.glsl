@@ -14,7 +14,7 @@ const float MOST = 6.0;
 
 // What a box holds.
 struct Held {
-    // Mean of red, green and blue, in units.
+    // Red, green and blue together, in units.
     float flux;
     float squares;
     float area;
@@ -22,7 +22,7 @@ struct Held {
 
 Held held_by(uvec4 flux, uint area)
 {
-    return Held(dot(vec3(flux.rgb), vec3(1.0 / 3.0)), square_unit * (float(flux.a) + usual_square), float(area));
+    return Held(dot(vec3(flux.rgb), vec3(1.0)), square_unit * (float(flux.a) + usual_square), float(area));
 }
 
 Held held_in(ivec4 box)
@@ -44,8 +44,11 @@ float threshold(float fine, float coarse)
 // 1 where the wider box is better.
 float ratio(Held fine, Held coarse, float limit)
 {
-    if (coarse.area <= fine.area || fine.area <= 0.0) {
+    if (coarse.area <= fine.area) {
         return 1.0;
+    }
+    if (fine.area <= 0.0) {
+        return 0.0;
     }
     float difference = coarse.flux / coarse.area - fine.flux / fine.area;
     float variance = coarse.squares / coarse.area * (1.0 / fine.area - 1.0 / coarse.area);

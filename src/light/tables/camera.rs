@@ -18,6 +18,8 @@ const LONGER: &str = "longer extents";
 const BENT: &str = "extents on curves";
 /// Sides of the blocks whose logarithms one texel sums.
 const BLOCK: u32 = 32;
+/// Units of the pixels' geometric mean area, or about: 2^13 of a power of two.
+pub(super) const MEAN_AREA: f64 = 8192.0;
 /// The longest extent is 2 to this.
 const DOUBLINGS: u32 = 7;
 
@@ -93,13 +95,14 @@ impl CameraMaps {
             let (smaller, larger) = self.log_areas.split_at_mut(index);
             Pass::new(FOLD, fold).read("sums", smaller[index - 1].texture()).fill(&mut larger[0])?;
         }
-        of_areas(AREAS, areas)
-            .read("log_areas", self.log_areas[self.log_areas.len() - 1].texture())
-            .fill(&mut self.areas)?;
-        self.table.build(one, self.areas.texture())?;
-
         let [extents, spare] = &mut self.extents;
         surfaces.read_places_by(Pass::new(LINKS, links)).set("map_size", map_size).fill(extents)?;
+        of_areas(AREAS, areas)
+            .read("log_areas", self.log_areas[self.log_areas.len() - 1].texture())
+            .read("links", extents.texture())
+            .set("map_size", map_size)
+            .fill(&mut self.areas)?;
+        self.table.build(one, self.areas.texture())?;
         for doubling in 0..DOUBLINGS {
             Pass::new(LONGER, longer)
                 .read("shorter", extents.texture())

@@ -32,6 +32,13 @@ const POINTS: &str = "flux of pixels";
 const TEST_FINE: &str = "test of noise, narrow";
 const TEST_COARSE: &str = "test of noise, wide";
 const GATHER: &str = "light from tables";
+const SMOOTH: &str = "smooth light";
+/// The widest box that light is smoothed over, by its radius in pixels.
+const MOST_SMOOTH: u32 = 16;
+/// As many steps of light a pixel as such a box can sum in 32 bits.
+const MOST_STEPS: u32 = u32::MAX / ((2 * MOST_SMOOTH + 1) * (2 * MOST_SMOOTH + 1));
+/// How many times the mean light that is; what is brighter is not smoothed with what is darker.
+const BRIGHTEST: f64 = 64.0;
 
 /// Gathers light from tables into maps of one size.
 #[derive(Debug)]
@@ -42,12 +49,16 @@ pub struct TablesStage {
     points_program: Program,
     tests: [Program; 2],
     gather: Program,
+    smooth: Program,
     camera: CameraMaps,
     points: Target,
     flux_table: SummedTable,
     /// Of narrow boxes at each pixel, and of wide ones at every second.
     ratios: [Target; 2],
     ratio_tables: [SummedTable; 2],
+    /// Light, and the same in whole steps.
+    gathered: Target,
+    light_table: SummedTable,
     irradiance: IrradianceMap,
 }
 
@@ -59,7 +70,7 @@ impl TablesStage {
     /// refuses a shader; [`Error::Gl`](crate::Error::Gl) when memory runs out.
     pub fn new(gl: &Gl, size: UVec2) -> Result<Self> {
         let _state = StateGuard::new(gl);
-        let [points, fine, coarse, gather] = sources();
+        let [points, fine, coarse, gather, smooth] = sources();
         let targets = &mut Targets::new(gl, &Self::shapes(size))?;
         Ok(Self {
             gl: gl.clone(),
@@ -68,11 +79,14 @@ impl TablesStage {
             points_program: Program::new(gl, &points)?,
             tests: [Program::new(gl, &fine)?, Program::new(gl, &coarse)?],
             gather: Program::new(gl, &gather)?,
+            smooth: Program::new(gl, &smooth)?,
             camera: CameraMaps::new(gl, size, targets)?,
             points: targets.take(),
             flux_table: SummedTable::take(size, targets),
             ratios: [targets.take(), targets.take()],
             ratio_tables: [SummedTable::take(size, targets), SummedTable::take(halved(size), targets)],
+            gathered: targets.take(),
+            light_table: SummedTable::take(size, targets),
             irradiance: IrradianceMap::of(targets.take()),
         })
     }
@@ -86,6 +100,11 @@ impl TablesStage {
         shapes.extend(table(size));
         shapes.extend([four(TEST_FINE, size), four(TEST_COARSE, halved(size))]);
         shapes.extend([table(size), table(halved(size))].concat());
+        shapes.push(vec![
+            TextureShape::new(GATHER, TextureFormat::Rgba32Float, size),
+            TextureShape::new("steps of light", TextureFormat::Rgba32Uint, size),
+        ]);
+        shapes.extend(table(size));
         shapes.push(IrradianceMap::shape(size));
         shapes
     }
@@ -103,6 +122,8 @@ impl TablesStage {
         self.flux_table = SummedTable::take(size, targets);
         self.ratios = [targets.take(), targets.take()];
         self.ratio_tables = [SummedTable::take(size, targets), SummedTable::take(halved(size), targets)];
+        self.gathered = targets.take();
+        self.light_table = SummedTable::take(size, targets);
         self.irradiance = IrradianceMap::of(targets.take());
     }
 
@@ -157,6 +178,7 @@ impl TablesStage {
         for (table, ratios) in self.ratio_tables.iter_mut().zip(&self.ratios) {
             table.build(&self.four, ratios.texture())?;
         }
+        let steps = self.steps_of_light(flux);
         Pass::new(GATHER, &self.gather)
             .read("normal", surfaces.normal())
             .read("extents", self.camera.extents())
@@ -164,11 +186,28 @@ impl TablesStage {
             .read("area_table", self.camera.table())
             .read("fine_tests", self.ratio_tables[0].texture())
             .read("coarse_tests", self.ratio_tables[1].texture())
+            .set("steps_of_light", steps)
+            .fill(&mut self.gathered)?;
+        self.light_table.build(&self.four, &self.gathered.textures()[1])?;
+        Pass::new(SMOOTH, &self.smooth)
+            .read("gathered", self.gathered.texture())
+            .read("extents", self.camera.extents())
+            .read("light_table", self.light_table.texture())
             .read("log_areas", self.camera.log_areas())
+            .set("steps_of_light", steps)
             .set("flux_unit", units.power)
             .fill(self.irradiance.target())?;
         self.gl.check("gathering light from tables")?;
         Ok(&self.irradiance)
+    }
+
+    /// Steps of one unit of power over one of area: the mean light is a 64th of the most, or less.
+    #[expect(clippy::cast_possible_truncation, reason = "within the range of f32")]
+    fn steps_of_light(&self, flux: &FluxMap) -> f32 {
+        let brightest = flux.totals().power.into_iter().fold(0.0, f64::max);
+        let pixels = self.irradiance.size().as_dvec2().element_product();
+        let mean = brightest / f64::from(flux.units().power) / (pixels * camera::MEAN_AREA);
+        (f64::from(MOST_STEPS) / (BRIGHTEST * mean.max(1e-20))) as f32
     }
 
     /// What was gathered last.
@@ -184,7 +223,7 @@ fn halved(size: UVec2) -> UVec2 {
 }
 
 /// The shaders of each frame beside those of tables, in the order of the passes.
-fn sources() -> [ShaderSource; 4] {
+fn sources() -> [ShaderSource; 5] {
     let four = |label| ShaderSource::new(label).targets([TextureFormat::Rgba32Uint]);
     let test = |label| four(label).file(glsl!("light/tables/box.glsl")).file(glsl!("light/tables/noise.glsl"));
     [
@@ -192,10 +231,16 @@ fn sources() -> [ShaderSource; 4] {
         test(TEST_FINE).file(glsl!("light/tables/test_fine.frag")),
         test(TEST_COARSE).file(glsl!("light/tables/test_coarse.frag")),
         ShaderSource::new(GATHER)
+            .targets([TextureFormat::Rgba32Float, TextureFormat::Rgba32Uint])
+            .define("MOST_STEPS", MOST_STEPS)
+            .file(glsl!("light/tables/box.glsl"))
+            .file(glsl!("light/tables/gather.frag")),
+        ShaderSource::new(SMOOTH)
             .targets([TextureFormat::Rgba32Float])
+            .define("MOST_SMOOTH", MOST_SMOOTH)
             .file(glsl!("light/tables/box.glsl"))
             .file(glsl!("light/tables/area_unit.glsl"))
-            .file(glsl!("light/tables/gather.frag")),
+            .file(glsl!("light/tables/smooth.frag")),
     ]
 }
 

@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 
+use super::face::links;
 use crate::image::Image;
 use crate::view::View;
 
@@ -41,7 +42,20 @@ impl Areas {
         #[expect(clippy::cast_precision_loss, reason = "a number of pixels")]
         let mean = logarithms.iter().sum::<f64>() / logarithms.len().max(1) as f64;
         let unit = ((mean + 0.5).floor() - f64::from(MEAN_EXPONENT)).exp2();
-        let exact = area.map(|area| area.map_or(0.0, |area| area / unit));
+        let links = links(position, normal);
+        let is_at_an_edge = |x: u32, y: u32| links.at(x, y).contains(&Some(false));
+        let has_an_inside = |x: u32, y: u32| {
+            let [left, right, down, up] = links.at(x, y).map(|linked| linked == Some(true));
+            (left && !is_at_an_edge(x - 1, y))
+                || (right && !is_at_an_edge(x + 1, y))
+                || (down && !is_at_an_edge(x, y - 1))
+                || (up && !is_at_an_edge(x, y + 1))
+        };
+        // A pixel at the edge of a face sees less of it than its area says.
+        let counts = |x, y| !(is_at_an_edge(x, y) && has_an_inside(x, y));
+        let exact = Image::from_fn(area.size(), |x, y| {
+            area.at(x, y).filter(|_| counts(x, y)).map_or(0.0, |area| area / unit)
+        });
         let whole = |exact: f64| {
             if 3.0 * exact >= 2.0 { (exact + 0.5).floor().min(MOST_UNITS) } else { 0.0 }
         };

@@ -19,15 +19,19 @@ const MOST: f64 = 6.0;
 const SOFT: f64 = 0.4;
 /// Tests are pooled over boxes so many times as wide.
 const POOL: u32 = 2;
+/// The widest box that light is smoothed over, by its radius in pixels.
+const MOST_SMOOTH: u32 = 16;
 /// Ratios are summed in whole numbers of this.
 const RATIO_UNIT: f64 = 1.0 / 8192.0;
 
 /// What light is gathered from, of every pixel.
 #[derive(Clone, Debug)]
 pub struct Tables {
-    /// Area in units; 0 where nothing is lit.
+    /// Area in units; 0 where none counts.
     pub areas: Image<u32>,
-    /// Flux in units: red, green, blue and squares of their mean.
+    /// Whether photons can land on what the pixel shows.
+    pub lit: Image<bool>,
+    /// Flux in units: red, green, blue and squares of their sum.
     pub flux: Image<[u32; 4]>,
     /// Pixels that the face goes on to the left, to the right, down (to lower rows) and up.
     pub extents: Image<[u8; 4]>,
@@ -60,7 +64,31 @@ impl Tables {
     pub fn gather(&self) -> Image<Gathered> {
         let size = self.areas.size();
         let ratios: Vec<Image<u32>> = (1..RADII.len()).map(|level| self.ratios(level)).collect();
-        Image::from_fn(size, |x, y| self.gather_at(x, y, &ratios))
+        self.smooth(&Image::from_fn(size, |x, y| self.gather_at(x, y, &ratios)))
+    }
+
+    /// Light averaged over half of each pixel's width, over those that are lit.
+    #[must_use]
+    pub fn smooth(&self, gathered: &Image<Gathered>) -> Image<Gathered> {
+        Image::from_fn(gathered.size(), |x, y| {
+            let home = gathered.at(x, y);
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most 64")]
+            let radius = ((0.5 * home.radius) as u32).min(MOST_SMOOTH);
+            if radius == 0 {
+                return home;
+            }
+            let Inside { lo, hi } = self.box_at(x, y, radius);
+            let (mut sum, mut count) = ([0.0; 3], 0.0);
+            for (x, y) in (lo.y..=hi.y).flat_map(|y| (lo.x..=hi.x).map(move |x| (x, y))) {
+                if self.lit.at(x, y) {
+                    count += 1.0;
+                    for (sum, light) in sum.iter_mut().zip(gathered.at(x, y).light) {
+                        *sum += light;
+                    }
+                }
+            }
+            Gathered { light: sum.map(|sum| sum / count), ..home }
+        })
     }
 
     /// The test of noise of a level at each of its places: each pixel up to radius 4, from there on every
@@ -76,10 +104,12 @@ impl Tables {
         let [fine, coarse] = [level - 1, level].map(|level| self.held(self.box_at(x, y, RADII[level])));
         let [a, b] = [level - 1, level].map(|level| (f64::from(RADII[level]) + 0.5).powi(2));
         let limit = 1.0 + (b - a) / (b + a);
-        let ratio = if self.areas.at(x, y) == 0 || coarse.area <= fine.area || fine.area <= 0.0 {
+        let ratio = if coarse.area <= fine.area {
             1.0
+        } else if fine.area <= 0.0 {
+            0.0
         } else {
-            let mean = |held: Held| held.flux.iter().sum::<f64>() / 3.0 / held.area;
+            let mean = |held: Held| held.flux.iter().sum::<f64>() / held.area;
             let square = self.square_unit * (coarse.squares + self.usual_square);
             let variance = square / coarse.area * (1.0 / fine.area - 1.0 / coarse.area);
             ((mean(coarse) - mean(fine)).powi(2) / variance).min(MOST) / limit
@@ -90,14 +120,15 @@ impl Tables {
     }
 
     fn gather_at(&self, x: u32, y: u32, ratios: &[Image<u32>]) -> Gathered {
-        if self.areas.at(x, y) == 0 {
+        if !self.lit.at(x, y) {
             return Gathered::default();
         }
         let light = |radius| {
             let held = self.held(self.box_at(x, y, radius));
-            held.flux.map(|flux| flux / held.area)
+            (held.area > 0.0).then(|| held.flux.map(|flux| flux / held.area))
         };
-        let mut found = Gathered { light: light(0), radius: 0.0 };
+        let mut found = Gathered { light: light(0).unwrap_or_default(), radius: 0.0 };
+        let mut is_found = light(0).is_some();
         let mut share = 1.0_f64;
         for level in 1..RADII.len() {
             let ratio = self.pooled(x, y, level, &ratios[level - 1]);
@@ -106,10 +137,16 @@ impl Tables {
                 break;
             }
             let (wider, radius) = (light(RADII[level]), f64::from(RADII[level]));
-            found.radius += share * (radius - found.radius);
-            for (light, wider) in found.light.iter_mut().zip(wider) {
-                *light += share * (wider - *light);
+            // Where there is nothing, what is wider is all there is.
+            let part = if is_found { share } else { 1.0 };
+            found.radius += part * (radius - found.radius);
+            for (light, wider) in found.light.iter_mut().zip(wider.unwrap_or_default()) {
+                *light += part * (wider - *light);
             }
+            is_found |= wider.is_some();
+        }
+        if !is_found && let Some((radius, light)) = RADII.iter().find_map(|&radius| Some((radius, light(radius)?))) {
+            found = Gathered { light, radius: radius.into() };
         }
         found
     }

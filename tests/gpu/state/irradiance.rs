@@ -69,7 +69,7 @@ fn stages(watch: &Watch<'_>, surfaces: &SurfaceMaps, photons: &PhotonPoints) {
     density.add(surfaces, photons).unwrap();
     watch.unchanged("DensityStage::add");
     density.read_counts().unwrap();
-    density.power().read().unwrap();
+    density.power().unwrap().read().unwrap();
     watch.unchanged("PowerMap::read");
     let mut splat = SplatStage::new(gl, SIZE, &settings).unwrap();
     watch.unchanged("SplatStage::new");
@@ -77,7 +77,7 @@ fn stages(watch: &Watch<'_>, surfaces: &SurfaceMaps, photons: &PhotonPoints) {
     watch.unchanged("SplatStage::splat");
     let mut gather = GatherStage::new(gl, SIZE, &settings).unwrap();
     watch.unchanged("GatherStage::new");
-    gather.gather(surfaces, density.power(), radius).unwrap();
+    gather.gather(surfaces, density.power().unwrap(), radius).unwrap();
     watch.unchanged("GatherStage::gather");
     density.clear();
     splat.clear();

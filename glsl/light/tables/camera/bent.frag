@@ -8,6 +8,7 @@ vec3 facing_at(ivec2 pixel)
     return texelFetch(normal, pixel, 0).xyz;
 }
 
+// In pixels: left, right, down and up.
 layout(location = 0) out uvec4 extent;
 
 void main()

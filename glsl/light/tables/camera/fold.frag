@@ -3,6 +3,7 @@
 // Sums of smaller blocks.
 uniform sampler2D sums;
 
+// Sum of logarithms to base 2, of areas in squares of a scene unit; g: pixels on diffuse surfaces.
 layout(location = 0) out vec4 sum;
 
 void main()

@@ -5,6 +5,7 @@ uniform usampler2D shorter;
 // The most that they can be so far.
 uniform int most;
 
+// In pixels: left, right, down and up.
 layout(location = 0) out uvec4 extent;
 
 void main()

@@ -3,6 +3,7 @@
 // The sums of runs with all runs before them, layered as what is drawn here.
 uniform usampler2DArray runs_before;
 
+// All texels of the line up to and with the run's i-th, modulo 2^32.
 layout(location = 0) out TEXEL sum_0;
 layout(location = 1) out TEXEL sum_1;
 layout(location = 2) out TEXEL sum_2;
@@ -16,10 +17,10 @@ void main()
 {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     int run = along(pixel);
-    TEXEL sum = NOTHING;
+    TEXEL sum = TEXEL(0u);
     if (run > 0) {
         int before = run - 1;
-        sum = VALUE(texelFetch(runs_before, ivec3(place_of(before >> 3, pixel), before & 7), 0));
+        sum = value_of(texelFetch(runs_before, ivec3(place_of(before >> 3, pixel), before & 7), 0));
     }
     TEXEL sums[8];
     for (int i = 0; i < 8; ++i) {

@@ -1,12 +1,18 @@
 // What is summed: one number a texel, or four.
 #ifdef ONE_CHANNEL
 #define TEXEL uint
-#define VALUE(texel) (texel).r
-#define NOTHING 0u
+
+TEXEL value_of(uvec4 texel)
+{
+    return texel.r;
+}
 #else
 #define TEXEL uvec4
-#define VALUE(texel) (texel)
-#define NOTHING uvec4(0u)
+
+TEXEL value_of(uvec4 texel)
+{
+    return texel;
+}
 #endif
 
 // Texels of a line.
@@ -18,7 +24,7 @@ uniform usampler2DArray texels;
 
 TEXEL texel_at(ivec2 place)
 {
-    return VALUE(texelFetch(texels, ivec3(place.x >> 3, place.y, place.x & 7), 0));
+    return value_of(texelFetch(texels, ivec3(place.x >> 3, place.y, place.x & 7), 0));
 }
 #else
 // What is summed.
@@ -26,7 +32,7 @@ uniform usampler2D texels;
 
 TEXEL texel_at(ivec2 place)
 {
-    return VALUE(texelFetch(texels, place, 0));
+    return value_of(texelFetch(texels, place, 0));
 }
 #endif
 
