@@ -265,11 +265,12 @@ impl IrradiancePipeline {
         self.density.flux()
     }
 
-    /// The radii of the last photons' kernels, if they are variable; undefined before the first.
+    /// The radii of the last photons' kernels, if they are variable, or those that light from tables was
+    /// gathered from; undefined before the first light.
     #[must_use]
     pub fn radii(&self) -> Option<&RadiusMap> {
         let radii = self.radii.as_ref().filter(|_| self.settings.searches_radii());
-        radii.map(|(_, radii)| radii.radii())
+        radii.map(|(_, radii)| radii.radii()).or_else(|| self.spreads.widths())
     }
 
     /// The light so far.

@@ -9,7 +9,7 @@ use super::splat::SplatStage;
 use super::tables::TablesStage;
 use crate::error::Result;
 use crate::gl::{Gl, TargetShape, Targets, bytes_of};
-use crate::maps::{IrradianceMap, KernelRadii, PhotonPoints, SurfaceMaps};
+use crate::maps::{IrradianceMap, KernelRadii, PhotonPoints, RadiusMap, SurfaceMaps};
 use crate::settings::{Estimate, IrradianceSettings, Kernel};
 
 /// Stages that were used, of which one is in use.
@@ -150,6 +150,14 @@ impl Spreads {
             (Stage::Gather(gather), Some(power), _) => gather.gather(surfaces, power, radius),
             (Stage::Tables(tables), _, Some(flux)) => tables.gather(surfaces, flux),
             (Stage::Gather(_) | Stage::Tables(_), ..) => unreachable!("photons are counted as the light needs"),
+        }
+    }
+
+    /// The widths of light from tables.
+    pub(super) fn widths(&self) -> Option<&RadiusMap> {
+        match &self.made[self.current].stage {
+            Stage::Tables(tables) => Some(tables.radii()),
+            Stage::Splat(_) | Stage::Gather(_) => None,
         }
     }
 

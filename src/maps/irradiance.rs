@@ -3,14 +3,13 @@
 use glam::UVec2;
 
 use crate::error::Result;
-#[cfg(feature = "scene")]
-use crate::gl::Texture;
-use crate::gl::{StateGuard, Target, TargetShape, TextureFormat, TextureShape};
+use crate::gl::{StateGuard, Target, TargetShape, Texture, TextureFormat, TextureShape};
 use crate::image::Image;
 
 /// Indirect irradiance: power per area in scene units, linear RGB, in GL_RGBA32F.
 ///
-/// The fourth value is the number of kernels drawn over the pixel for a splat, of photons found for a gather.
+/// The fourth value is the number of kernels drawn over the pixel for a splat, of photons found for a gather,
+/// and for light from tables the radius in pixels that it was gathered from.
 #[derive(Debug)]
 pub struct IrradianceMap {
     target: Target,
@@ -55,7 +54,6 @@ impl IrradianceMap {
         &mut self.target
     }
 
-    #[cfg(feature = "scene")]
     pub(crate) fn as_texture(&self) -> &Texture {
         self.target.texture()
     }

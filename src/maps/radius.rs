@@ -8,7 +8,7 @@ use crate::gl::{Gl, StateGuard, Target, TargetShape, Texture, TextureFormat, Tex
 use crate::image::Image;
 
 /// The radius of each pixel's box, in pixels: a GL_R32UI texture, from 1 to MR, or 0 where a
-/// [`Mask`](crate::Mask) says that none is needed.
+/// [`Mask`](crate::Mask) says that none is needed; for light from tables from 0 to 64.
 #[derive(Debug)]
 pub struct RadiusMap {
     target: Target,

@@ -38,7 +38,7 @@ use crate::light::{self, IrradiancePipeline};
 use crate::maps::{PhotonPoints, SurfaceMaps};
 use crate::photon::{Emission, PhotonPoint, TraceSettings};
 use crate::scene::Scene;
-use crate::settings::{Estimate, KernelRadius, PictureSettings};
+use crate::settings::{KernelRadius, PictureSettings};
 use nearest::PhotonGrid;
 use prepared::Prepared;
 use seen_through::{Wanted, seen_through};
@@ -164,16 +164,11 @@ impl Renderer {
         let (position, normal) = (self.surfaces.read_position()?, self.surfaces.read_normal()?);
         let size = self.surfaces.size();
         let (radius, limited) = match (settings.radius, self.pipeline.radii()) {
-            _ if settings.estimate == Estimate::Tables => {
-                #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "up to 64")]
-                let radius = irradiance.map(|[.., radius]| radius.round() as u32);
-                (radius, Image::filled(size, 0))
-            }
-            (KernelRadius::Fixed(radius), _) => (Image::filled(size, radius), Image::filled(size, 0)),
-            (KernelRadius::Variable, Some(radii)) => {
+            (_, Some(radii)) => {
                 let limited = radii.read_limited()?;
-                (radii.read()?, limited.unwrap_or_else(|| unreachable!("the settings ask for the mask")))
+                (radii.read()?, limited.unwrap_or_else(|| Image::filled(size, 0)))
             }
+            (KernelRadius::Fixed(radius), None) => (Image::filled(size, radius), Image::filled(size, 0)),
             (KernelRadius::Variable, None) => unreachable!("variable radii were searched"),
         };
         let layers = Layers {

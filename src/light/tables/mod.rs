@@ -24,7 +24,7 @@ use crate::gl::{
     Gl, Pass, Program, ShaderSource, StateGuard, Target, TargetShape, Targets, TextureFormat, TextureShape,
     bytes_of, glsl,
 };
-use crate::maps::{FluxMap, IrradianceMap, SurfaceMaps};
+use crate::maps::{FluxMap, IrradianceMap, RadiusMap, SurfaceMaps};
 use camera::CameraMaps;
 use scan::{Channels, ScanPrograms, SummedTable};
 
@@ -33,6 +33,7 @@ const TEST_FINE: &str = "test of noise, narrow";
 const TEST_COARSE: &str = "test of noise, wide";
 const GATHER: &str = "light from tables";
 const SMOOTH: &str = "smooth light";
+const WIDTHS: &str = "widths of light";
 /// The widest box that light is smoothed over, by its radius in pixels.
 const MOST_SMOOTH: u32 = 16;
 /// As many steps of light a pixel as such a box can sum in 32 bits.
@@ -50,6 +51,7 @@ pub struct TablesStage {
     tests: [Program; 2],
     gather: Program,
     smooth: Program,
+    widths: Program,
     camera: CameraMaps,
     points: Target,
     flux_table: SummedTable,
@@ -60,6 +62,7 @@ pub struct TablesStage {
     gathered: Target,
     light_table: SummedTable,
     irradiance: IrradianceMap,
+    radii: RadiusMap,
 }
 
 impl TablesStage {
@@ -70,7 +73,7 @@ impl TablesStage {
     /// refuses a shader; [`Error::Gl`](crate::Error::Gl) when memory runs out.
     pub fn new(gl: &Gl, size: UVec2) -> Result<Self> {
         let _state = StateGuard::new(gl);
-        let [points, fine, coarse, gather, smooth] = sources();
+        let [points, fine, coarse, gather, smooth, widths] = sources();
         let targets = &mut Targets::new(gl, &Self::shapes(size))?;
         Ok(Self {
             gl: gl.clone(),
@@ -80,6 +83,7 @@ impl TablesStage {
             tests: [Program::new(gl, &fine)?, Program::new(gl, &coarse)?],
             gather: Program::new(gl, &gather)?,
             smooth: Program::new(gl, &smooth)?,
+            widths: Program::new(gl, &widths)?,
             camera: CameraMaps::new(gl, size, targets)?,
             points: targets.take(),
             flux_table: SummedTable::take(size, targets),
@@ -88,6 +92,7 @@ impl TablesStage {
             gathered: targets.take(),
             light_table: SummedTable::take(size, targets),
             irradiance: IrradianceMap::of(targets.take()),
+            radii: RadiusMap::of(targets.take()),
         })
     }
 
@@ -105,7 +110,7 @@ impl TablesStage {
             TextureShape::new("steps of light", TextureFormat::Rgba32Uint, size),
         ]);
         shapes.extend(table(size));
-        shapes.push(IrradianceMap::shape(size));
+        shapes.extend([IrradianceMap::shape(size), RadiusMap::shape(size, false)]);
         shapes
     }
 
@@ -125,6 +130,7 @@ impl TablesStage {
         self.gathered = targets.take();
         self.light_table = SummedTable::take(size, targets);
         self.irradiance = IrradianceMap::of(targets.take());
+        self.radii = RadiusMap::of(targets.take());
     }
 
     /// The camera or what it sees has changed: areas and extents are made anew by the next
@@ -197,6 +203,9 @@ impl TablesStage {
             .set("steps_of_light", steps)
             .set("flux_unit", units.power)
             .fill(self.irradiance.target())?;
+        Pass::new(WIDTHS, &self.widths)
+            .read("irradiance", self.irradiance.as_texture())
+            .fill(self.radii.target())?;
         self.gl.check("gathering light from tables")?;
         Ok(&self.irradiance)
     }
@@ -208,6 +217,12 @@ impl TablesStage {
         let pixels = self.irradiance.size().as_dvec2().element_product();
         let mean = brightest / f64::from(flux.units().power) / (pixels * camera::MEAN_AREA);
         (f64::from(MOST_STEPS) / (BRIGHTEST * mean.max(1e-20))) as f32
+    }
+
+    /// How wide each pixel's light was gathered, in pixels; 0 where nothing is lit.
+    #[must_use]
+    pub fn radii(&self) -> &RadiusMap {
+        &self.radii
     }
 
     /// What was gathered last.
@@ -223,7 +238,7 @@ fn halved(size: UVec2) -> UVec2 {
 }
 
 /// The shaders of each frame beside those of tables, in the order of the passes.
-fn sources() -> [ShaderSource; 5] {
+fn sources() -> [ShaderSource; 6] {
     let four = |label| ShaderSource::new(label).targets([TextureFormat::Rgba32Uint]);
     let test = |label| four(label).file(glsl!("light/tables/box.glsl")).file(glsl!("light/tables/noise.glsl"));
     [
@@ -241,6 +256,9 @@ fn sources() -> [ShaderSource; 5] {
             .file(glsl!("light/tables/box.glsl"))
             .file(glsl!("light/tables/area_unit.glsl"))
             .file(glsl!("light/tables/smooth.frag")),
+        ShaderSource::new(WIDTHS)
+            .targets([TextureFormat::R32Uint])
+            .file(glsl!("light/tables/widths.frag")),
     ]
 }
 

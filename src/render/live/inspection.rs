@@ -62,8 +62,8 @@ impl Inspector {
         };
         let (table, radii) = self.maps.insert(maps);
         let radius = match (pipeline.settings().radius, radii) {
-            (KernelRadius::Fixed(radius), _) => radius,
-            (KernelRadius::Variable, Some(radii)) => radii.at(pixel.x, pixel.y),
+            (_, Some(radii)) => radii.at(pixel.x, pixel.y),
+            (KernelRadius::Fixed(radius), None) => radius,
             (KernelRadius::Variable, None) => pipeline.settings().radii.search.max_radius,
         };
         let within = |radius| table.count(Inside::of_box(size, pixel.x, pixel.y, radius));
