@@ -47,7 +47,7 @@ enum Beside {
     /// Power, and the count again.
     Power(PowerMap),
     /// Power in whole units, with what makes units coarser.
-    Flux(FluxMap, Program),
+    Flux(Box<(FluxMap, Program)>),
 }
 
 impl DensityStage {
@@ -74,7 +74,7 @@ impl DensityStage {
         let target = Target::of(gl, &Self::shape(size, has_flux))?;
         let map = DensityMap::of_stage(target.texture());
         let beside = if has_flux {
-            Beside::Flux(flux_map(&target), Program::new(gl, &coarser_source())?)
+            Beside::Flux(Box::new((flux_map(&target), Program::new(gl, &coarser_source())?)))
         } else {
             Beside::Power(power_map(&target))
         };
@@ -86,7 +86,8 @@ impl DensityStage {
 
     /// The counts, and what is added up beside them.
     pub(crate) fn shape(size: UVec2, has_flux: bool) -> TargetShape {
-        let beside: &[_] = if has_flux { &["flux, low bits", "flux, high bits"] } else { &["power of photons"] };
+        let beside: &[_] =
+            if has_flux { &["flux, low bits", "flux, high bits"] } else { &["power of photons"] };
         let counts = TextureShape::new("density map", TextureFormat::R32Float, size);
         let beside = beside.iter().map(|label| TextureShape::new(label, TextureFormat::Rgba32Float, size));
         std::iter::once(counts).chain(beside).collect()
@@ -111,7 +112,8 @@ impl DensityStage {
         self.map.set_bounds(bounds);
         match &mut self.beside {
             Beside::Power(power) => *power = power_map(&self.target),
-            Beside::Flux(flux, _) => {
+            Beside::Flux(beside) => {
+                let flux = &mut beside.0;
                 let (units, totals) = (flux.units(), *flux.totals());
                 *flux = flux_map(&self.target);
                 flux.set(units, totals);
@@ -125,7 +127,8 @@ impl DensityStage {
         self.target.clear_floats(&vec![Vec4::ZERO; self.target.textures().len()]);
         self.map.set_bounds(CountBounds::total_at_most(0));
         self.read = (0, 0);
-        if let Beside::Flux(flux, _) = &mut self.beside {
+        if let Beside::Flux(beside) = &mut self.beside {
+            let flux = &mut beside.0;
             let none = PhotonTotals::default();
             flux.set(FluxUnits::of(&none), none);
         }
@@ -133,7 +136,8 @@ impl DensityStage {
 
     /// Makes room for the power of more photons.
     fn make_room(&mut self, photons: &PhotonPoints) -> Result<()> {
-        let Beside::Flux(flux, coarser) = &mut self.beside else { return Ok(()) };
+        let Beside::Flux(beside) = &mut self.beside else { return Ok(()) };
+        let (flux, coarser) = &mut **beside;
         let Some(totals) = photons.totals() else {
             return Err(Error::Mismatch {
                 what: "photons for light from tables",
@@ -191,8 +195,8 @@ impl DensityStage {
             let pass = surfaces.read_by(Pass::new(LABEL, &self.program));
             match &self.beside {
                 Beside::Power(_) => pass,
-                Beside::Flux(flux, _) => {
-                    let FluxUnits { power, square_root } = flux.units();
+                Beside::Flux(beside) => {
+                    let FluxUnits { power, square_root } = beside.0.units();
                     pass.set("units_of_power", 1.0 / power).set("units_of_root", 1.0 / square_root)
                 }
             }
@@ -254,7 +258,7 @@ impl DensityStage {
     pub fn flux(&self) -> Option<&FluxMap> {
         match &self.beside {
             Beside::Power(_) => None,
-            Beside::Flux(flux, _) => Some(flux),
+            Beside::Flux(beside) => Some(&beside.0),
         }
     }
 }

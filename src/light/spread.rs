@@ -149,7 +149,9 @@ impl Spreads {
             (Stage::Splat(splat), ..) => splat.add(surfaces, photons, radius),
             (Stage::Gather(gather), Some(power), _) => gather.gather(surfaces, power, radius),
             (Stage::Tables(tables), _, Some(flux)) => tables.gather(surfaces, flux),
-            (Stage::Gather(_) | Stage::Tables(_), ..) => unreachable!("photons are counted as the light needs"),
+            (Stage::Gather(_) | Stage::Tables(_), ..) => {
+                unreachable!("photons are counted as the light needs")
+            }
         }
     }
 

@@ -16,8 +16,8 @@ mod surfaces;
 
 pub use density::DensityMap;
 pub use exactness::CountBounds;
-pub(crate) use frame::Rectangle;
 pub use flux::{FluxMap, FluxUnits};
+pub(crate) use frame::Rectangle;
 pub use frame::{Changed, Frame};
 pub use host_depth::HostDepth;
 pub use irradiance::IrradianceMap;

@@ -61,10 +61,8 @@ mod tests {
 
     #[test]
     fn sums_by_hand() {
-        let photon = |red, green, blue| PhotonPoint {
-            power: Vec3::new(red, green, blue),
-            ..PhotonPoint::zeroed()
-        };
+        let photon =
+            |red, green, blue| PhotonPoint { power: Vec3::new(red, green, blue), ..PhotonPoint::zeroed() };
         let two = PhotonTotals::of(&[photon(1.0, 2.0, 3.0), photon(0.0, 0.0, 3.0)]);
         assert_eq!(two, PhotonTotals { count: 2, power: [1.0, 2.0, 6.0], squares: 45.0 });
         assert_eq!((two + two).squares, 90.0);

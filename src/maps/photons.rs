@@ -25,7 +25,13 @@ impl PhotonPoints {
     /// None yet.
     #[must_use]
     pub fn new(gl: &Gl) -> Self {
-        Self { gl: gl.clone(), chunks: Vec::new(), spare: Vec::new(), borrowed: false, totals: Some(PhotonTotals::default()) }
+        Self {
+            gl: gl.clone(),
+            chunks: Vec::new(),
+            spare: Vec::new(),
+            borrowed: false,
+            totals: Some(PhotonTotals::default()),
+        }
     }
 
     /// Reads the first `count` photons of a vertex buffer that the host owns and keeps alive as long as this:

@@ -5,7 +5,7 @@ use varikernel::image::Image;
 use varikernel::light::TablesStage;
 use varikernel::maps::FluxUnits;
 use varikernel::photon::PhotonPoint;
-use varikernel::reference::tables::{Areas, Tables, extents};
+use varikernel::reference::tables::Tables;
 use varikernel::render::draw_surfaces;
 use varikernel::scene::Scene;
 use varikernel::{DensityStage, Error, Gl, PhotonPoints, SurfaceMaps};
@@ -71,8 +71,7 @@ fn on_pixels(surfaces: &SurfaceMaps, units: FluxUnits, count: u32) -> (Vec<Photo
         }
         #[expect(clippy::cast_precision_loss, reason = "small numbers")]
         let power = Vec3::new(0.3, 0.2, 0.1) * (1.0 + (index % 1013) as f32 / 77.0);
-        let photon =
-            PhotonPoint { position: Vec3::new(a, b, c), normal: Vec3::new(d, e, f), power, surface };
+        let photon = PhotonPoint { position: Vec3::new(a, b, c), normal: Vec3::new(d, e, f), power, surface };
         let before: [u64; 4] = expected.at(x, y);
         let added = in_units(&photon, units);
         expected.set(x, y, std::array::from_fn(|channel| before[channel] + added[channel]));
@@ -141,32 +140,15 @@ fn a_pixel_of_very_many_photons_is_exact_up_to_the_limit() {
     }
 }
 
-/// What the definition gathers from what the stages before it hold.
+/// What the definition gathers from, and one unit of its light.
 fn definition(surfaces: &SurfaceMaps, density: &DensityStage) -> (Tables, f64) {
     let (position, normal) = (surfaces.read_position().unwrap(), surfaces.read_normal().unwrap());
-    let areas = Areas::of(surfaces.view(), &position, &normal);
     let flux = density.flux().unwrap();
-    let units = flux.read_units().unwrap();
     let FluxUnits { power, square_root } = flux.units();
-    let square = f64::from(square_root).powi(2);
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss, reason = "units")]
-    let weighed = |x, y| {
-        let weight: f64 = areas.weights.at(x, y);
-        let [red, green, blue, squares] = units.at(x, y).map(|units| units as f64);
-        [red * weight, green * weight, blue * weight, squares * weight * weight]
-            .map(|units| (units + 0.5) as u32)
-    };
+    let units = [power, square_root].map(f64::from);
     #[expect(clippy::cast_precision_loss, reason = "a mean")]
-    let usual_square = flux.totals().squares / flux.totals().count as f64 / square;
-    let tables = Tables {
-        flux: Image::from_fn(SIZE, weighed),
-        lit: normal.map(|[.., number]| number > 0.0),
-        extents: extents(&position, &normal),
-        square_unit: square / f64::from(power).powi(2),
-        usual_square,
-        areas: areas.units,
-    };
-    (tables, f64::from(power) / areas.unit)
+    let mean_square = flux.totals().squares / flux.totals().count as f64;
+    Tables::of(surfaces.view(), [&position, &normal], &flux.read_units().unwrap(), units, mean_square)
 }
 
 /// By how much light differs from its definition at most, as a share of the mean light, and radii, as a
@@ -244,7 +226,10 @@ fn photons_whose_power_is_no_number_or_unknown_are_refused() {
         points.upload(&photons).unwrap();
         let mut density = DensityStage::with_flux(&gl, SIZE).unwrap();
         let refused = density.add(&surfaces, &points).unwrap_err();
-        assert!(matches!(refused, Error::Mismatch { what: "photons for light from tables", .. }), "{refused}");
+        assert!(
+            matches!(refused, Error::Mismatch { what: "photons for light from tables", .. }),
+            "{refused}"
+        );
         assert_eq!(density.drawn(), 0);
     }
 }

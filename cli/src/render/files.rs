@@ -2,6 +2,7 @@
 
 use varikernel::image::{Attribute, Format, LayerFile, write_colours};
 use varikernel::render::Layers;
+use varikernel::settings::{Estimate, PictureSettings};
 
 use super::Args;
 
@@ -27,17 +28,21 @@ pub(super) fn write(args: &Args, layers: &Layers, attributes: &[Attribute]) -> v
 }
 
 /// What made the picture, for its file.
-pub(super) fn attributes(args: &Args, scene: &str) -> Vec<Attribute> {
-    let source = &args.source;
+pub(super) fn attributes(args: &Args, settings: &PictureSettings, scene: &str) -> Vec<Attribute> {
     let mut attributes = common(args, scene);
     attributes.extend([
         Attribute::text("varikernel.first_bounce", format!("{:?}", args.first_bounce)),
-        Attribute::integer("varikernel.min_photons", source.min_photons),
-        Attribute::integer("varikernel.max_radius", source.max_radius),
-        Attribute::text("varikernel.radius", format!("{:?}", args.radius)),
-        Attribute::text("varikernel.kernel", format!("{:?}", source.kernel)),
-        Attribute::text("varikernel.estimate", format!("{:?}", args.estimate())),
+        Attribute::text("varikernel.estimate", format!("{:?}", settings.estimate)),
     ]);
+    // Light from tables asks for no kernels.
+    if settings.estimate != Estimate::Tables {
+        attributes.extend([
+            Attribute::integer("varikernel.min_photons", settings.min_photons),
+            Attribute::integer("varikernel.max_radius", settings.max_radius),
+            Attribute::text("varikernel.radius", format!("{:?}", settings.radius)),
+            Attribute::text("varikernel.kernel", format!("{:?}", settings.kernel)),
+        ]);
+    }
     attributes
 }
 

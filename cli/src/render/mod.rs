@@ -5,13 +5,13 @@ mod files;
 mod reference;
 mod report;
 mod source;
+mod stages;
 
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 use anyhow::{Result, bail};
 use varikernel::image::{Format, check_writable};
-use varikernel::render::{Progress, Renderer};
+use varikernel::render::{Layers, Progress, Renderer};
 use varikernel::settings::{DirectLight, Estimate, FirstBounce, KernelRadius, PictureSettings};
 
 pub(super) use bar::Bar;
@@ -19,16 +19,18 @@ pub(super) use source::Source;
 
 use self::files::{attributes, write};
 use self::report::Report;
+use self::stages::Stages;
 use super::numbers::whole_checked_later;
 use super::photons::load;
 use super::words::in_words_of_options;
 use super::{Outcome, device, output};
 
-/// Render a scene by photons whose kernels fit their density.
+/// Render a scene by photons.
 ///
-/// Direct light is traced with soft shadows; all other light is photons, drawn over as many pixels as it
-/// takes to hold n of them. What is seen in mirrors and through glass is gathered around each place that is
-/// seen there.
+/// Direct light is traced with soft shadows; all other light is photons, gathered at each pixel from as many
+/// pixels around it as have the same light but for noise, or, with --light splat, drawn over as many pixels as
+/// it takes to hold n of them. What is seen in mirrors and through glass is gathered around each place that
+/// is seen there.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
     /// Picture to write: .exr (linear, with layers), or .png (tone-mapped).
@@ -39,13 +41,13 @@ pub(crate) struct Args {
     #[command(flatten)]
     pub(super) source: Source,
 
-    /// Width of the kernels: `variable`, or `fixed:PIXELS` for the same everywhere.
-    #[arg(long, default_value = "variable", value_parser = parse_radius, value_name = "RADIUS")]
+    /// Width of the kernels: `variable`, or `fixed:PIXELS` for the same everywhere [default: variable].
+    #[arg(long, value_parser = parse_radius, value_name = "RADIUS")]
     #[arg(help_heading = "Kernels")]
-    radius: KernelRadius,
+    radius: Option<KernelRadius>,
 
     /// How photons become light.
-    #[arg(long, value_enum, default_value_t = Light::Splat)]
+    #[arg(long, value_enum, default_value_t = Light::Tables)]
     #[arg(help_heading = "Light")]
     light: Light,
 
@@ -101,6 +103,20 @@ impl Args {
             Light::Gather => Estimate::Gather { count_correction: self.count_correction },
         }
     }
+
+    /// Refuses what light from tables does not ask for.
+    fn check_kernel_options(&self) -> Result<()> {
+        if self.count_correction && self.light != Light::Gather {
+            bail!("--count-correction is for gathers\nhelp: add --light gather");
+        }
+        let radius = self.radius.map(|_| "--radius");
+        match self.source.kernel_options().chain(radius).next() {
+            Some(option) if self.light == Light::Tables && self.reference.is_none() => {
+                bail!("{option} is for kernels, which light from tables has none of\nhelp: add --light splat")
+            }
+            _ => Ok(()),
+        }
+    }
 }
 
 pub(crate) fn run(args: &Args) -> Result<Outcome> {
@@ -108,13 +124,14 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     args.source.check_exposure()?;
     let trace = args.source.trace();
     let settings = PictureSettings {
-        radius: args.radius,
+        radius: args.radius.unwrap_or(KernelRadius::Variable),
         first_bounce: args.first_bounce,
         direct: args.direct,
         estimate: args.estimate(),
         ..args.source.picture()
     };
     settings.validate().and_then(|()| trace.validate()).map_err(in_words_of_options)?;
+    args.check_kernel_options()?;
     let scene = load(&args.source.scene)?;
     let gl = device::open(&args.source.device)?;
 
@@ -122,14 +139,20 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
         return reference::render(args, &gl, &scene, &settings, seeds);
     }
 
-    let begun = Instant::now();
     let bar = Bar::new();
-    let mut renderer = Renderer::new(&gl, &scene, &settings, &trace, &mut |progress| bar.show(progress))
-        .map_err(in_words_of_options)?;
-    bar.show(Progress { stage: "picture", done: 0.0 });
+    let mut stages = Stages::new("surfaces");
+    let mut show = |progress: Progress| {
+        stages.enter(progress.stage);
+        bar.show(progress);
+    };
+    let mut renderer =
+        Renderer::new(&gl, &scene, &settings, &trace, &mut show).map_err(in_words_of_options)?;
+    show(Progress { stage: "light", done: 0.0 });
     let (layers, account) = renderer.picture(&settings)?;
     bar.finish();
-    write(args, &layers, &attributes(args, &scene.title))?;
+    stages.enter("file");
+    write(args, &layers, &attributes(args, &settings, &scene.title))?;
+    let stages = stages.end();
     let report = Report {
         version: env!("CARGO_PKG_VERSION"),
         scene: &scene.title,
@@ -139,7 +162,9 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
         device: gl.info(),
         account,
         energy_error: account.energy_error(),
-        seconds: begun.elapsed().as_secs_f64(),
+        mean_radius: mean_radius(&layers),
+        seconds: stages.iter().map(|stage| stage.seconds).sum(),
+        stages,
     };
     if args.json {
         output::print_json(&report)?;
@@ -147,6 +172,15 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
         report::print(&report)?;
     }
     Ok(Outcome::Done)
+}
+
+/// Mean radius of the pixels that photons light, in pixels.
+fn mean_radius(layers: &Layers) -> f64 {
+    let lit =
+        layers.radius.values().iter().zip(layers.albedo.values()).filter(|(_, albedo)| **albedo != [0.0; 3]);
+    let (sum, count) =
+        lit.fold((0.0, 0.0), |(sum, count), (&radius, _)| (sum + f64::from(radius), count + 1.0));
+    sum / f64::max(count, 1.0)
 }
 
 /// Refuses what is neither .exr nor .png, and what can't be written.

@@ -7,8 +7,9 @@ use serde::Serialize;
 use varikernel::gl::DeviceInfo;
 use varikernel::photon::{MAX_BOUNCES, MAX_SPECULAR, TraceSettings};
 use varikernel::render::Account;
-use varikernel::settings::{KernelRadius, PictureSettings};
+use varikernel::settings::{Estimate, PictureSettings};
 
+use super::stages::Stage;
 use crate::output;
 
 /// The answer of `--json`.
@@ -22,7 +23,10 @@ pub(super) struct Report<'a> {
     pub(super) device: &'a DeviceInfo,
     pub(super) account: Account,
     pub(super) energy_error: f64,
+    /// Of the pixels that photons light, in pixels.
+    pub(super) mean_radius: f64,
     pub(super) seconds: f64,
+    pub(super) stages: Vec<Stage>,
 }
 
 pub(super) fn print(report: &Report<'_>) -> Result<()> {
@@ -36,23 +40,33 @@ pub(super) fn print(report: &Report<'_>) -> Result<()> {
         ("renderer", report.device.renderer.clone()),
         ("photons", format!("{emitted} with {landings} landings, {uploaded} uploaded")),
         ("contributing", format!("{contributing}, {share:.1} % of the landings")),
-        (
-            "fragments",
-            format!("{:.1} a contributing photon", fragments / (contributing_or_one(contributing))),
-        ),
     ];
-    // With a fixed radius nothing is searched.
-    if report.settings.radius == KernelRadius::Variable {
+    let radius = format!("radius {:.1} pixels in the mean", report.mean_radius);
+    match report.settings.estimate {
+        Estimate::Tables => facts.push(("light", format!("from tables, {radius}"))),
+        Estimate::Splat => {
+            let fragments = fragments / contributing_or_one(contributing);
+            facts.push(("light", format!("splats, {radius}, {fragments:.1} fragments a photon")));
+        }
+        _ => facts.push(("light", format!("gathered, {radius}"))),
+    }
+    if report.settings.irradiance().searches_radii() {
         facts
             .push(("limited", format!("{:.3} % of the pixels found too few photons", 100.0 * limited_share)));
     }
     facts.extend([
         ("cut off", cut_off(cut_off_share, report.photons.bounces)),
         ("energy", format!("kept to {:.1e}", report.energy_error)),
-        ("time", format!("{:.1} s", report.seconds)),
+        ("time", time(report.seconds, &report.stages)),
         ("written", report.output.display().to_string()),
     ]);
     output::print_facts(&facts)
+}
+
+/// The whole time, and that of each stage.
+fn time(seconds: f64, stages: &[Stage]) -> String {
+    let stages: Vec<_> = stages.iter().map(|stage| format!("{} {:.1}", stage.name, stage.seconds)).collect();
+    format!("{seconds:.1} s: {}", stages.join(", "))
 }
 
 /// How much of the photons' power was followed no further, and why.

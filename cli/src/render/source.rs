@@ -43,22 +43,22 @@ pub(crate) struct Source {
     #[arg(help_heading = "Photons")]
     pub(crate) seed: u64,
 
-    /// n: photons that a kernel has to hold, at least 1.
-    #[arg(short = 'n', long, default_value_t = 400, value_name = "N", allow_negative_numbers = true)]
+    /// n: photons that a kernel has to hold, at least 1 [default: 400].
+    #[arg(short = 'n', long, value_name = "N", allow_negative_numbers = true)]
     #[arg(value_parser = whole_checked_later(1..=u32::MAX))]
     #[arg(help_heading = "Kernels")]
-    pub(crate) min_photons: u32,
+    pub(crate) min_photons: Option<u32>,
 
-    #[arg(help = format!("MR: the largest radius, in pixels, 1 to {MAX_PICTURE_RADIUS}"))]
-    #[arg(short = 'r', long, default_value_t = 64, value_name = "MR", allow_negative_numbers = true)]
+    #[arg(help = format!("MR: the largest radius, in pixels, 1 to {MAX_PICTURE_RADIUS} [default: 64]"))]
+    #[arg(short = 'r', long, value_name = "MR", allow_negative_numbers = true)]
     #[arg(value_parser = whole_checked_later(1..=MAX_PICTURE_RADIUS))]
     #[arg(help_heading = "Kernels")]
-    pub(crate) max_radius: u32,
+    pub(crate) max_radius: Option<u32>,
 
-    /// Falloff of a kernel from its middle to its edge.
-    #[arg(long, value_enum, default_value_t = Kernel::Silverman)]
+    /// Falloff of a kernel from its middle to its edge [default: silverman].
+    #[arg(long, value_enum)]
     #[arg(help_heading = "Kernels")]
-    pub(crate) kernel: Kernel,
+    pub(crate) kernel: Option<Kernel>,
 
     /// Shadow rays for each pixel and area light; places with shadow maps on each, with --direct shadow-map.
     #[arg(long, default_value_t = 16, value_name = "NUMBER", allow_negative_numbers = true)]
@@ -83,15 +83,26 @@ impl Source {
     }
 
     pub(crate) fn picture(&self) -> PictureSettings {
+        let usual = PictureSettings::default();
         PictureSettings {
             size: self.size,
-            min_photons: self.min_photons,
-            max_radius: self.max_radius,
-            kernel: self.kernel,
+            min_photons: self.min_photons.unwrap_or(usual.min_photons),
+            max_radius: self.max_radius.unwrap_or(usual.max_radius),
+            kernel: self.kernel.unwrap_or(usual.kernel),
             light_samples: self.light_samples,
             seed: self.seed,
-            ..PictureSettings::default()
+            ..usual
         }
+    }
+
+    /// The options about kernels that were given.
+    pub(crate) fn kernel_options(&self) -> impl Iterator<Item = &'static str> {
+        let given = [
+            (self.min_photons.is_some(), "--min-photons"),
+            (self.max_radius.is_some(), "--max-radius"),
+            (self.kernel.is_some(), "--kernel"),
+        ];
+        given.into_iter().filter_map(|(is_given, option)| is_given.then_some(option))
     }
 
     /// Refuses an exposure that is no number.

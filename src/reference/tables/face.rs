@@ -43,7 +43,7 @@ pub fn extents(position: &Image<[f32; 4]>, normal: &Image<[f32; 4]>) -> Image<[u
                 chain += 1;
             }
             if agrees(home, home + chain * way) {
-                return u8::try_from(chain).expect("at most 128");
+                return u8::try_from(chain).unwrap_or_else(|_| unreachable!("at most 128"));
             }
             // By halving, as a curve that turns one way asks for.
             let mut length = 0;
@@ -52,7 +52,7 @@ pub fn extents(position: &Image<[f32; 4]>, normal: &Image<[f32; 4]>) -> Image<[u
                     length += step;
                 }
             }
-            u8::try_from(length).expect("less than 128")
+            u8::try_from(length).unwrap_or_else(|_| unreachable!("less than 128"))
         })
     })
 }
@@ -69,6 +69,7 @@ pub(super) fn links(position: &Image<[f32; 4]>, normal: &Image<[f32; 4]>) -> Ima
 
 /// Whether two neighbours are on one face: on the same surface, about as it faces, and neither off the other's
 /// plane by more than a fifth of what lies between them.
+#[expect(clippy::float_cmp, reason = "numbers of surfaces are whole")]
 fn share_a_face(
     (position, normal, number): (Vec3, Vec3, f32),
     (other_position, other_normal, other_number): (Vec3, Vec3, f32),

@@ -1,4 +1,4 @@
-//! Light from tables by its definition: sums by nested loops, quotients in f64 ([`TablesStage`]).
+//! Light from tables by its definition: sums in whole numbers, quotients in f64 ([`TablesStage`]).
 //!
 //! [`TablesStage`]: crate::TablesStage
 
@@ -8,8 +8,11 @@ mod face;
 pub use area::Areas;
 pub use face::extents;
 
-use super::Inside;
+use glam::UVec2;
+
+use super::{Inside, Table};
 use crate::image::Image;
+use crate::view::View;
 
 /// Radii of the boxes, in pixels; the last is 64.
 pub const RADII: [u32; 8] = [0, 1, 2, 4, 8, 16, 32, 64];
@@ -41,6 +44,45 @@ pub struct Tables {
     pub usual_square: f64,
 }
 
+impl Tables {
+    /// What light is gathered from where a view shows `position` and `normal`, as
+    /// [`SurfaceMaps`](crate::SurfaceMaps) hold them, and `flux` lies on the pixels: in units, of the power
+    /// and the root of squares that are given, of photons with this mean square of their power. Beside it
+    /// one unit of light, as irradiance.
+    #[must_use]
+    pub fn of(
+        view: &View,
+        [position, normal]: [&Image<[f32; 4]>; 2],
+        flux: &Image<[u64; 4]>,
+        [power, square_root]: [f64; 2],
+        mean_square: f64,
+    ) -> (Self, f64) {
+        let areas = Areas::of(view, position, normal);
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            clippy::cast_precision_loss,
+            reason = "less than 2^32"
+        )]
+        let weighed = |x, y| {
+            let weight = areas.weights.at(x, y);
+            let [red, green, blue, squares] = flux.at(x, y).map(|units| units as f64);
+            [red * weight, green * weight, blue * weight, squares * weight * weight]
+                .map(|units| (units + 0.5) as u32)
+        };
+        let square = square_root * square_root;
+        let given = Self {
+            flux: Image::from_fn(flux.size(), weighed),
+            lit: normal.map(|[.., number]| number > 0.0),
+            extents: extents(position, normal),
+            square_unit: square / (power * power),
+            usual_square: mean_square / square,
+            areas: areas.units,
+        };
+        (given, power / areas.unit)
+    }
+}
+
 /// Light of a pixel, in units of power over those of area, and the radius that it came from.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Gathered {
@@ -63,8 +105,10 @@ impl Tables {
     #[must_use]
     pub fn gather(&self) -> Image<Gathered> {
         let size = self.areas.size();
-        let ratios: Vec<Image<u32>> = (1..RADII.len()).map(|level| self.ratios(level)).collect();
-        self.smooth(&Image::from_fn(size, |x, y| self.gather_at(x, y, &ratios)))
+        let sums = Sums::of(self);
+        let ratios: Vec<Table> =
+            (1..RADII.len()).map(|level| Table::new(&self.ratios_of(level, &sums))).collect();
+        self.smooth(&Image::from_fn(size, |x, y| self.gather_at(x, y, &sums, &ratios)))
     }
 
     /// Light averaged over half of each pixel's width, over those that are lit.
@@ -95,13 +139,17 @@ impl Tables {
     /// second of every second row; in 2^-13.
     #[must_use]
     pub fn ratios(&self, level: usize) -> Image<u32> {
-        let step = step_of(level);
-        let size = self.areas.size().map(|side| side.div_ceil(step));
-        Image::from_fn(size, |x, y| self.ratio(step * x, step * y, level))
+        self.ratios_of(level, &Sums::of(self))
     }
 
-    fn ratio(&self, x: u32, y: u32, level: usize) -> u32 {
-        let [fine, coarse] = [level - 1, level].map(|level| self.held(self.box_at(x, y, RADII[level])));
+    fn ratios_of(&self, level: usize, sums: &Sums) -> Image<u32> {
+        let step = step_of(level);
+        let size = self.areas.size().map(|side| side.div_ceil(step));
+        Image::from_fn(size, |x, y| self.ratio(step * x, step * y, level, sums))
+    }
+
+    fn ratio(&self, x: u32, y: u32, level: usize, sums: &Sums) -> u32 {
+        let [fine, coarse] = [level - 1, level].map(|level| sums.held(self.box_at(x, y, RADII[level])));
         let [a, b] = [level - 1, level].map(|level| (f64::from(RADII[level]) + 0.5).powi(2));
         let limit = 1.0 + (b - a) / (b + a);
         let ratio = if coarse.area <= fine.area {
@@ -119,12 +167,12 @@ impl Tables {
         whole
     }
 
-    fn gather_at(&self, x: u32, y: u32, ratios: &[Image<u32>]) -> Gathered {
+    fn gather_at(&self, x: u32, y: u32, sums: &Sums, ratios: &[Table]) -> Gathered {
         if !self.lit.at(x, y) {
             return Gathered::default();
         }
         let light = |radius| {
-            let held = self.held(self.box_at(x, y, radius));
+            let held = sums.held(self.box_at(x, y, radius));
             (held.area > 0.0).then(|| held.flux.map(|flux| flux / held.area))
         };
         let mut found = Gathered { light: light(0).unwrap_or_default(), radius: 0.0 };
@@ -145,52 +193,50 @@ impl Tables {
             }
             is_found |= wider.is_some();
         }
-        if !is_found && let Some((radius, light)) = RADII.iter().find_map(|&radius| Some((radius, light(radius)?))) {
+        if !is_found
+            && let Some((radius, light)) = RADII.iter().find_map(|&radius| Some((radius, light(radius)?)))
+        {
             found = Gathered { light, radius: radius.into() };
         }
         found
     }
 
     /// The mean ratio of a level around a pixel.
-    fn pooled(&self, x: u32, y: u32, level: usize, ratios: &Image<u32>) -> f64 {
+    fn pooled(&self, x: u32, y: u32, level: usize, ratios: &Table) -> f64 {
         let step = step_of(level);
         let Inside { lo, hi } = self.box_at(x, y, POOL * RADII[level]);
-        let columns = lo.x.div_ceil(step)..=hi.x / step;
-        let rows = lo.y.div_ceil(step)..=hi.y / step;
-        let (mut sum, mut count) = (0_u64, 0_u32);
-        for y in rows {
-            for x in columns.clone() {
-                sum += u64::from(ratios.at(x, y));
-                count += 1;
-            }
-        }
-        if count == 0 {
-            (sum, count) = (ratios.at(x / step, y / step).into(), 1);
-        }
+        let places = Inside { lo: lo.map(|first| first.div_ceil(step)), hi: hi / step };
+        let own = UVec2::new(x, y) / step;
+        let places = if places.lo.cmple(places.hi).all() { places } else { Inside { lo: own, hi: own } };
         #[expect(clippy::cast_precision_loss, reason = "less than 2^32")]
-        let mean = sum as f64 * RATIO_UNIT / f64::from(count);
+        let mean = ratios.count(places) as f64 * RATIO_UNIT / places.area() as f64;
         mean
     }
 
     /// The box of a radius, as far as the pixel's face goes along its row and column.
     fn box_at(&self, x: u32, y: u32, radius: u32) -> Inside {
         let [left, right, down, up] = self.extents.at(x, y).map(|extent| u32::from(extent).min(radius));
-        Inside { lo: glam::UVec2::new(x - left, y - down), hi: glam::UVec2::new(x + right, y + up) }
+        Inside { lo: UVec2::new(x - left, y - down), hi: UVec2::new(x + right, y + up) }
+    }
+}
+
+/// Sums of all that is given.
+struct Sums {
+    area: Table,
+    flux: [Table; 4],
+}
+
+impl Sums {
+    fn of(given: &Tables) -> Self {
+        let of_channel = |channel: usize| Table::new(&given.flux.map(|flux| flux[channel]));
+        Self { area: Table::new(&given.areas), flux: [0, 1, 2, 3].map(of_channel) }
     }
 
-    #[expect(clippy::cast_precision_loss, reason = "less than 2^32")]
-    fn held(&self, Inside { lo, hi }: Inside) -> Held {
-        let (mut flux, mut area) = ([0_u64; 4], 0_u64);
-        for y in lo.y..=hi.y {
-            for x in lo.x..=hi.x {
-                area += u64::from(self.areas.at(x, y));
-                for (sum, units) in flux.iter_mut().zip(self.flux.at(x, y)) {
-                    *sum += u64::from(units);
-                }
-            }
-        }
-        let [red, green, blue, squares] = flux.map(|sum| sum as f64);
-        Held { flux: [red, green, blue], squares, area: area as f64 }
+    #[expect(clippy::cast_precision_loss, reason = "less than 2^53")]
+    fn held(&self, inside: Inside) -> Held {
+        let [red, green, blue, squares] =
+            [0, 1, 2, 3].map(|index: usize| self.flux[index].count(inside) as f64);
+        Held { flux: [red, green, blue], squares, area: self.area.count(inside) as f64 }
     }
 }
 

@@ -204,9 +204,7 @@ fn runs_of(axis: Axis, size: UVec2) -> UVec2 {
 
 /// The size of each level, until one run is left.
 fn level_sizes(axis: Axis, size: UVec2) -> impl Iterator<Item = UVec2> {
-    std::iter::successors(Some(size), move |&size| {
-        (axis.along(size) > RUN).then(|| runs_of(axis, size))
-    })
+    std::iter::successors(Some(size), move |&size| (axis.along(size) > RUN).then(|| runs_of(axis, size)))
 }
 
 /// The shaders of one axis.
@@ -219,12 +217,12 @@ fn sources(channels: Channels, axis: Axis, is_layered: bool) -> [ShaderSource; 2
             .define_if(channels == Channels::One, "ONE_CHANNEL")
             .define_if(is_layered, "LAYERED")
             .define_if(axis == Axis::Rows, "ALONG_ROWS")
-            .file(glsl!("light/tables/scan/texel.glsl"))
+            .file(glsl!("light/tables/summed_table/texel.glsl"))
     };
     let format = channels.format();
     [
-        source(RUN_SUMS).targets([format]).file(glsl!("light/tables/scan/run_sums.frag")),
-        source(RUNS).targets([format; RUN as usize]).file(glsl!("light/tables/scan/runs.frag")),
+        source(RUN_SUMS).targets([format]).file(glsl!("light/tables/summed_table/run_sums.frag")),
+        source(RUNS).targets([format; RUN as usize]).file(glsl!("light/tables/summed_table/runs.frag")),
     ]
 }
 

@@ -3,7 +3,7 @@
 
 use glam::UVec2;
 
-use super::scan::{Channels, ScanPrograms, SummedTable};
+use super::summed_table::{Channels, ScanPrograms, SummedTable};
 use crate::error::Result;
 use crate::gl::{
     Gl, Pass, Program, ShaderSource, Target, TargetShape, Targets, Texture, TextureFormat, TextureShape, glsl,
@@ -25,7 +25,7 @@ const DOUBLINGS: u32 = 7;
 
 /// Areas and extents of one camera.
 #[derive(Debug)]
-pub(super) struct CameraMaps {
+pub(super) struct GeometryMaps {
     programs: [Program; 6],
     /// Smaller and smaller ones; the last is one texel.
     log_areas: Vec<Target>,
@@ -37,11 +37,11 @@ pub(super) struct CameraMaps {
     is_known: bool,
 }
 
-impl CameraMaps {
+impl GeometryMaps {
     pub(super) fn new(gl: &Gl, size: UVec2, targets: &mut Targets) -> Result<Self> {
-        let [a, b, c, d, e, f] = sources().map(|source| Program::new(gl, &source));
+        let [log_areas, fold, areas, links, longer, bent] = sources().map(|source| Program::new(gl, &source));
         Ok(Self {
-            programs: [a?, b?, c?, d?, e?, f?],
+            programs: [log_areas?, fold?, areas?, links?, longer?, bent?],
             log_areas: fold_sizes(size).map(|_| targets.take()).collect(),
             areas: targets.take(),
             table: SummedTable::take(size, targets),
@@ -154,20 +154,18 @@ fn fold_sizes(size: UVec2) -> impl Iterator<Item = UVec2> {
 pub(super) fn sources() -> [ShaderSource; 6] {
     let extents = |label| ShaderSource::new(label).targets([TextureFormat::Rgba8Uint]);
     let surfaces = glsl!("common/surfaces.glsl");
-    let face = glsl!("light/tables/camera/face.glsl");
-    let block = |label| {
-        ShaderSource::new(label).targets([TextureFormat::Rgba32Float]).define("BLOCK", BLOCK)
-    };
+    let face = glsl!("light/tables/geometry/face.glsl");
+    let block = |label| ShaderSource::new(label).targets([TextureFormat::Rgba32Float]).define("BLOCK", BLOCK);
     [
-        block(LOG_AREAS).file(surfaces).file(glsl!("light/tables/camera/log_areas.frag")),
-        block(FOLD).file(glsl!("light/tables/camera/fold.frag")),
+        block(LOG_AREAS).file(surfaces).file(glsl!("light/tables/geometry/log_areas.frag")),
+        block(FOLD).file(glsl!("light/tables/geometry/fold.frag")),
         ShaderSource::new(AREAS)
             .targets([TextureFormat::R32Uint, TextureFormat::R32Float])
             .file(surfaces)
             .file(glsl!("light/tables/area_unit.glsl"))
-            .file(glsl!("light/tables/camera/areas.frag")),
-        extents(LINKS).file(surfaces).file(face).file(glsl!("light/tables/camera/links.frag")),
-        extents(LONGER).file(glsl!("light/tables/camera/longer.frag")),
-        extents(BENT).file(surfaces).file(face).file(glsl!("light/tables/camera/bent.frag")),
+            .file(glsl!("light/tables/geometry/areas.frag")),
+        extents(LINKS).file(surfaces).file(face).file(glsl!("light/tables/geometry/links.frag")),
+        extents(LONGER).file(glsl!("light/tables/geometry/longer.frag")),
+        extents(BENT).file(surfaces).file(face).file(glsl!("light/tables/geometry/bent.frag")),
     ]
 }
