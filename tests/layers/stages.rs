@@ -5,12 +5,13 @@ use crate::modules::{Package, Place, words};
 
 /// The stages of a picture beside the radii: whole modules, or the maker alone where its map is in the same
 /// file.
-const STAGES: [&str; 9] = [
+const STAGES: [&str; 10] = [
     "maps::mask::MaskMaker",
     "maps::position::PositionMaker",
     "light::density",
     "light::splat",
     "light::gather",
+    "light::tables",
     "render::surfaces",
     "render::bounce_map",
     "render::shadow_map",
