@@ -72,9 +72,9 @@ pub unsafe extern "C" fn varikernel_irradiance_create(
 ///
 /// `*irradiance_texture` is a GL_TEXTURE_2D in GL_RGBA32F, a sampler2D in your shaders: power per area in
 /// scene units, linear RGB; light that leaves a diffuse surface is albedo / pi of it. `*radius_texture` is as
-/// that of varikernel_pipeline_render, or 0 for a fixed radius; of VARIKERNEL_ESTIMATE_TABLES it says how wide
-/// each pixel's light was gathered, 0 where nothing is lit. The pointer may be null. Both belong to the handle
-/// and hold until its next frame.
+/// that of varikernel_pipeline_render, or 0 for a fixed radius; of VARIKERNEL_ESTIMATE_TABLES it says how
+/// wide each pixel's light was gathered, 0 where nothing is lit. The pointer may be null. Both belong to the
+/// handle and hold until its next frame.
 ///
 /// Waits for the GPU only where a pixel may hold 2^24 photons. With from_depth, a shader is compiled when a
 /// depth texture is first seen.

@@ -34,8 +34,8 @@ pub const VARIKERNEL_ESTIMATE_SPLAT: u32 = 0;
 /// estimate: each pixel gathers the power around it, with its own radius.
 pub const VARIKERNEL_ESTIMATE_GATHER: u32 = 1;
 
-/// estimate: the same, and of what c photons give (c - 1) / c is taken, as a radius that ends at a photon asks
-/// for.
+/// estimate: the same, and of what c photons give (c - 1) / c is taken, as a radius that ends at a photon
+/// asks for.
 pub const VARIKERNEL_ESTIMATE_GATHER_CORRECTED: u32 = 2;
 
 /// estimate: each pixel gathers from summed-area tables, as wide as a test of noise allows. No kernel, no
@@ -108,7 +108,7 @@ pub unsafe extern "C" fn varikernel_irradiance_settings_default(
     })
 }
 
-fn number_of<T: PartialEq>(all: &[(u32, T)], choice: T) -> u32 {
+fn number_of<T: Copy + PartialEq>(all: &[(u32, T)], choice: T) -> u32 {
     all.iter().find(|(_, known)| *known == choice).expect("each choice has a number").0
 }
 

@@ -39,9 +39,10 @@ pub(super) struct CameraMaps {
 
 impl CameraMaps {
     pub(super) fn new(gl: &Gl, size: UVec2, targets: &mut Targets) -> Result<Self> {
-        let [a, b, c, d, e, f] = sources().map(|source| Program::new(gl, &source));
+        let [log_areas, fold, areas, links, longer, bent] =
+            sources().map(|source| Program::new(gl, &source));
         Ok(Self {
-            programs: [a?, b?, c?, d?, e?, f?],
+            programs: [log_areas?, fold?, areas?, links?, longer?, bent?],
             log_areas: fold_sizes(size).map(|_| targets.take()).collect(),
             areas: targets.take(),
             table: SummedTable::take(size, targets),

@@ -65,7 +65,10 @@ fn tables_count_anew_and_give_what_a_new_pipeline_would() {
         let is_other = *pipeline.settings() != asked;
         pipeline.change(asked).unwrap();
         assert_eq!(pipeline.density_stage().drawn(), if is_other { 0 } else { points.count() });
-        assert_eq!((pipeline.flux().is_some(), pipeline.power().is_some()), (asked == tables, asked == splat));
+        assert_eq!(
+            (pipeline.flux().is_some(), pipeline.power().is_some()),
+            (asked == tables, asked == splat)
+        );
         pipeline.clear();
         let found = pipeline.add(&stand.surfaces, &points).unwrap().read().unwrap();
         let mut fresh = IrradiancePipeline::new(&gl, size, asked).unwrap();
