@@ -129,6 +129,28 @@
 #define VARIKERNEL_KERNEL_GAUSSIAN 4
 
 /**
+ * estimate: each photon spreads its power over the pixels around it, with the radius of its own pixel.
+ */
+#define VARIKERNEL_ESTIMATE_SPLAT 0
+
+/**
+ * estimate: each pixel gathers the power around it, with its own radius.
+ */
+#define VARIKERNEL_ESTIMATE_GATHER 1
+
+/**
+ * estimate: the same, and of what c photons give (c - 1) / c is taken, as a radius that ends at a photon
+ * asks for.
+ */
+#define VARIKERNEL_ESTIMATE_GATHER_CORRECTED 2
+
+/**
+ * estimate: each pixel gathers from summed-area tables, as wide as a test of noise allows. No kernel, no
+ * min_photons and no radius is asked for; frames have to bring photon_totals.
+ */
+#define VARIKERNEL_ESTIMATE_TABLES 3
+
+/**
  * How a call ended.
  */
 typedef enum varikernel_status {
@@ -330,7 +352,26 @@ typedef struct varikernel_irradiance_settings {
      * 1 if the host brings a depth buffer in place of positions, else 0. Default 0.
      */
     uint32_t from_depth;
+    /**
+     * How photons become light: VARIKERNEL_ESTIMATE_... Default VARIKERNEL_ESTIMATE_SPLAT.
+     */
+    uint32_t estimate;
 } varikernel_irradiance_settings;
+
+/**
+ * What photons carry together, or more: an upper bound will do, and costs a bit of exactness for each
+ * doubling.
+ */
+typedef struct varikernel_photon_totals {
+    /**
+     * The sum of their power, linear RGB: finite and not negative.
+     */
+    double power[3];
+    /**
+     * The sum of (red + green + blue)^2 of each photon's power: finite and not negative.
+     */
+    double squares;
+} varikernel_photon_totals;
 
 /**
  * One frame of photons on surfaces. Fill it with varikernel_irradiance_frame_default, then say what you
@@ -362,10 +403,19 @@ typedef struct varikernel_irradiance_frame {
      */
     uint32_t photon_count;
     /**
+     * What these photons carry together, for VARIKERNEL_ESTIMATE_TABLES; else it may be null, the default.
+     */
+    const struct varikernel_photon_totals *photon_totals;
+    /**
      * 1 to add these photons' light to that of the frames before, for the same surfaces and camera: of k
      * such frames, the sum is k times the light. 0 to forget those. Default 0.
      */
     uint32_t added;
+    /**
+     * 1 if camera and surfaces are those of the frame before, though the photons are new: what
+     * VARIKERNEL_ESTIMATE_TABLES needs of them alone is then kept. 0 to make it anew. Default 0.
+     */
+    uint32_t same_camera;
     /**
      * With from_depth: 1 if the far plane is at 0, else 0. Default 0.
      */
@@ -571,11 +621,13 @@ enum varikernel_status varikernel_irradiance_create(const struct varikernel_cont
                                                     struct varikernel_irradiance **irradiance);
 
 /**
- * Finds the light that photons bring to the surfaces: counts them, finds radii, draws a kernel for each.
+ * Finds the light that photons bring to the surfaces: counts them, finds radii, draws a kernel for each; or
+ * as settings say by estimate.
  *
  * `*irradiance_texture` is a GL_TEXTURE_2D in GL_RGBA32F, a sampler2D in your shaders: power per area in
  * scene units, linear RGB; light that leaves a diffuse surface is albedo / pi of it. `*radius_texture` is as
- * that of varikernel_pipeline_render, or 0 for a fixed radius; the pointer may be null. Both belong to the
+ * that of varikernel_pipeline_render, or 0 for a fixed radius; of VARIKERNEL_ESTIMATE_TABLES it says how
+ * wide each pixel's light was gathered, 0 where nothing is lit. The pointer may be null. Both belong to the
  * handle and hold until its next frame.
  *
  * Waits for the GPU only where a pixel may hold 2^24 photons. With from_depth, a shader is compiled when a
@@ -626,6 +678,16 @@ enum varikernel_status varikernel_irradiance_destroy(struct varikernel_irradianc
  */
 enum varikernel_status varikernel_irradiance_frame_default(struct varikernel_irradiance_frame *frame,
                                                            uint32_t size);
+
+/**
+ * Adds up what photons carry together, for hosts that have them in memory as well: no OpenGL is called.
+ * `photons` may be null if `count` is 0.
+ *
+ * Fails with INVALID_ARGUMENT.
+ */
+enum varikernel_status varikernel_photon_totals_of(const struct varikernel_photon *photons,
+                                                   uint32_t count,
+                                                   struct varikernel_photon_totals *totals);
 
 /**
  * Fills `settings` with the defaults. `size` is sizeof(varikernel_irradiance_settings).

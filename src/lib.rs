@@ -78,7 +78,7 @@
 //! In [`radius`], [`radius::tables`] says how each method of the thesis counts a box, [`radius::planner`]
 //! which table and search suit a map, and [`radius::certificate`] how a result is proved. [`maps::exactness`]
 //! has the rules of what is exact. In [`light`], [`DensityStage`] counts photons, [`SplatStage`] spreads
-//! them, and [`GatherStage`] gathers them.
+//! them, and [`GatherStage`] gathers them; [`TablesStage`] gathers them without a kernel.
 //!
 //! # The host's OpenGL state
 //! Each public call puts back what it touches, also when it fails; or, under [`StatePolicy::Defaults`], it
@@ -115,10 +115,13 @@
 //! | SAT | summed-area table, integral image | sums of all pixels up to each: a box takes four texels |
 //! | pyramid | summed mipmap, quadtree of sums | sums of 2 x 2, 4 x 4, ... pixels |
 //! | kernel | filter, footprint | how a photon's light falls off with distance |
-//! //! | Silverman's kernel | biweight, quartic | (1 - d²)², with d the distance in radii |
+//! | Silverman's kernel | biweight, quartic | (1 - d²)², with d the distance in radii |
 //! | variable radii | nearest-n, k-nearest-neighbour density estimation | kernels that hold n photons each |
 //! | spread | splat, scatter | each photon is drawn over the pixels around it |
 //! | gather | | each pixel collects the photons around it |
+//! | flux | | power of the photons of a pixel, in whole units whose sums are exact |
+//! | totals | | what photons carry together, by which the units of flux are chosen |
+//! | width | | how far around a pixel light from tables was gathered |
 //! | surfaces | g-buffer | place, normal and surface number of each pixel |
 //! | changed rectangle | dirty rectangle, damage | what differs from the frame before |
 //! | mask | stencil | the pixels that need a radius |
@@ -155,10 +158,11 @@ pub use {glam, glow};
 pub use error::{Error, Result};
 pub use gl::{Gl, StatePolicy};
 pub use image::Image;
-pub use light::{DensityStage, GatherStage, IrradiancePipeline, SplatStage};
+pub use light::{DensityStage, GatherStage, IrradiancePipeline, SplatStage, TablesStage};
 pub use maps::{
-    Changed, CountBounds, DensityMap, Frame, HostDepth, HostSurfaces, IrradianceMap, KernelRadii, Mask,
-    MaskMaker, PhotonPoints, PositionMaker, PowerMap, RadiusMap, SurfaceMaps,
+    Changed, CountBounds, DensityMap, FluxMap, FluxUnits, Frame, HostDepth, HostSurfaces, IrradianceMap,
+    KernelRadii, Mask, MaskMaker, PhotonPoints, PhotonTotals, PositionMaker, PowerMap, RadiusMap,
+    SurfaceMaps,
 };
 pub use photon::PhotonPoint;
 pub use radius::{Certificate, MemoryRequired, RadiusPipeline};

@@ -4,6 +4,7 @@
 
 mod header;
 mod programs;
+mod tables;
 
 use std::path::Path;
 

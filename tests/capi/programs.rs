@@ -47,7 +47,7 @@ fn library() -> &'static Path {
 }
 
 /// C99 or C++, without a warning.
-fn compiler(program: &str, standard: &str) -> Command {
+pub(crate) fn compiler(program: &str, standard: &str) -> Command {
     let mut command = Command::new(program);
     command.args([&format!("-std={standard}"), "-Wall", "-Wextra", "-Wpedantic", "-Werror"]).arg("-I");
     command.arg(root().join("include")).arg("-I").arg(root().join("examples/cpp"));
@@ -55,7 +55,7 @@ fn compiler(program: &str, standard: &str) -> Command {
 }
 
 /// Compiles a program against the library, as `examples/cpp/README.md` says, and runs it.
-fn compile_and_run(mut compiler: Command, source: &str) -> String {
+pub(crate) fn compile_and_run(mut compiler: Command, source: &str) -> String {
     let library = library();
     let program = work_folder().join(Path::new(source).file_stem().unwrap());
     run(compiler

@@ -15,7 +15,9 @@ use std::ffi::{CStr, c_void};
 use glam::UVec2;
 use glow::HasContext as _;
 use varikernel::gl::TextureFormat;
-use varikernel::settings::{Edges, IrradianceSettings, KernelRadius, Method, Order, Search, Settings};
+use varikernel::settings::{
+    Edges, Estimate, IrradianceSettings, KernelRadius, Method, Order, Search, Settings,
+};
 use varikernel::{
     Changed, CountBounds, DensityMap, Frame, Gl, Image, IrradiancePipeline, Mask, PhotonPoints,
     RadiusPipeline, StatePolicy, reference,
@@ -284,8 +286,13 @@ fn adaptive_pipeline(gl: &Gl) {
 
 fn irradiance_pipeline(gl: &Gl) {
     let HostPicture { mut positions, mut surfaces, photons, view } = HostPicture::new(gl, SIZE);
-    for radius in [KernelRadius::Variable, KernelRadius::Fixed(2)] {
-        let settings = IrradianceSettings { radius, ..IrradianceSettings::default() };
+    for (radius, estimate) in [
+        (KernelRadius::Variable, Estimate::Splat),
+        (KernelRadius::Fixed(2), Estimate::Splat),
+        (KernelRadius::Fixed(2), Estimate::Gather { count_correction: true }),
+        (KernelRadius::Variable, Estimate::Tables),
+    ] {
+        let settings = IrradianceSettings { radius, estimate, ..IrradianceSettings::default() };
         let mut pipeline = IrradiancePipeline::new(gl, SIZE, settings).unwrap();
         for _ in 0..2 {
             let log = log_of(|| {
@@ -293,8 +300,10 @@ fn irradiance_pipeline(gl: &Gl) {
                 surfaces.set_view(view).unwrap();
                 pipeline.render(&surfaces, &photons).unwrap().texture()
             });
-            check(gl, &format!("irradiance, {radius:?}"), &log);
+            check(gl, &format!("irradiance, {radius:?}, {estimate:?}"), &log);
         }
+        // The first addition may need units that are coarser, with textures of their own.
+        pipeline.add(&surfaces, &photons).unwrap();
         let log = log_of(|| pipeline.add(&surfaces, &photons).unwrap().texture());
         check(gl, "irradiance of more photons", &log);
         let light = pipeline.irradiance().read().unwrap();

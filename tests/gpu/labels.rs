@@ -154,8 +154,12 @@ fn every_object_of_the_library_has_a_name() {
         ("texture", "mask"),
         ("texture", "summed-area table"),
         ("texture", "brackets of tiles"),
+        ("texture", "flux, low bits"),
+        ("texture", "areas of pixels"),
+        ("framebuffer", "light from tables"),
         ("framebuffer", "summed-area table"),
         ("program", "census"),
+        ("program", "light from tables"),
         ("buffer", "census"),
         ("vertex array", "no vertices"),
         ("sampler", "nearest"),
@@ -171,7 +175,8 @@ fn every_object_of_the_library_has_a_name() {
     drop(others);
     drop(pictures);
 }
-fn pictures(gl: &Gl) -> varikernel::render::Renderer {
+
+fn pictures(gl: &Gl) -> [varikernel::render::Renderer; 2] {
     use varikernel::settings::{DirectLight, Estimate, PictureSettings};
 
     let scene = varikernel::scene::Scene::shipped("cornell-glass").unwrap();
@@ -187,7 +192,10 @@ fn pictures(gl: &Gl) -> varikernel::render::Renderer {
     renderer.picture(&settings).unwrap();
     renderer.change(&PictureSettings { estimate: Estimate::Splat, ..settings }).unwrap();
     renderer.spread().unwrap();
-    renderer
+    let tables = PictureSettings { estimate: Estimate::Tables, ..settings };
+    let mut of_tables = varikernel::render::Renderer::with_photons(gl, &scene, &tables, &photons).unwrap();
+    of_tables.picture(&tables).unwrap();
+    [renderer, of_tables]
 }
 
 thread_local! {

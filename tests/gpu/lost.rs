@@ -12,7 +12,7 @@ use varikernel::settings::{Estimate, IrradianceSettings, KernelRadius, Method, O
 use varikernel::{
     CountBounds, DensityMap, DensityStage, Error, Frame, GatherStage, Gl, HostDepth, HostSurfaces, Image,
     IrradiancePipeline, KernelRadii, Mask, MaskMaker, PositionMaker, RadiusMap, RadiusPipeline, SplatStage,
-    SurfaceMaps,
+    SurfaceMaps, TablesStage,
 };
 
 use crate::calls::{Calls, counted};
@@ -41,6 +41,8 @@ struct Light {
     density: DensityStage,
     splat: SplatStage,
     gather: GatherStage,
+    counted_in_units: DensityStage,
+    tables: TablesStage,
 }
 
 impl Light {
@@ -49,11 +51,17 @@ impl Light {
         let mut pipeline = IrradiancePipeline::new(gl, size, IrradianceSettings::default()).unwrap();
         pipeline.render(&host.surfaces, &host.photons).unwrap();
         let fixed = IrradianceSettings { radius: KernelRadius::Fixed(2), ..IrradianceSettings::default() };
+        let mut counted_in_units = DensityStage::with_flux(gl, size).unwrap();
+        counted_in_units.add(&host.surfaces, &host.photons).unwrap();
+        let mut tables = TablesStage::new(gl, size).unwrap();
+        tables.gather(&host.surfaces, counted_in_units.flux().unwrap()).unwrap();
         Self {
             pipeline,
             density: DensityStage::new(gl, size).unwrap(),
             splat: SplatStage::new(gl, size, &fixed).unwrap(),
             gather: GatherStage::new(gl, size, &fixed).unwrap(),
+            counted_in_units,
+            tables,
             host,
         }
     }
@@ -62,22 +70,27 @@ impl Light {
         fn failure<T>(result: varikernel::Result<T>) -> Option<Error> {
             result.err()
         }
-        let Self { host, pipeline, density, splat, gather } = self;
+        let Self { host, pipeline, density, splat, gather, counted_in_units, tables } = self;
         let HostPicture { positions, surfaces, photons, view } = host;
         let size = view.size();
         let (fixed, usual) = (KernelRadii::Fixed(2), IrradianceSettings::default());
         let usual_gather =
             IrradianceSettings { estimate: Estimate::Gather { count_correction: true }, ..usual };
+        let of_tables = IrradianceSettings { estimate: Estimate::Tables, ..usual };
         let depth = HostDepth { texture: name, reversed: false, zero_to_one: false };
         let borrowed = HostSurfaces { position: name, normal: name };
         let new_photons = HostPicture::photons(9);
         pipeline.clear();
         splat.clear();
+        let standing = failure(tables.gather(surfaces, counted_in_units.flux().unwrap()));
+        tables.forget_camera();
         vec![
             ("IrradiancePipeline::new", failure(IrradiancePipeline::new(gl, size, usual))),
             ("IrradiancePipeline::render", failure(pipeline.render(surfaces, photons))),
             ("IrradiancePipeline::add", failure(pipeline.add(surfaces, photons))),
             ("IrradiancePipeline::change", failure(pipeline.change(usual_gather))),
+            ("IrradiancePipeline::new, tables", failure(IrradiancePipeline::new(gl, size, of_tables))),
+            ("IrradiancePipeline::change, tables", failure(pipeline.change(of_tables))),
             ("IrradiancePipeline::count", failure(pipeline.count(surfaces, photons))),
             ("IrradiancePipeline::search", failure(pipeline.search())),
             ("IrradiancePipeline::spread", failure(pipeline.spread(surfaces, photons))),
@@ -92,6 +105,16 @@ impl Light {
             ("SplatStage::add", failure(splat.add(surfaces, photons, fixed))),
             ("GatherStage::new", failure(GatherStage::new(gl, size, &usual))),
             ("GatherStage::gather", failure(gather.gather(surfaces, density.power().unwrap(), fixed))),
+            ("DensityStage::with_flux", failure(DensityStage::with_flux(gl, size))),
+            ("DensityStage::add, in units", failure(counted_in_units.add(surfaces, photons))),
+            ("FluxMap::read", failure(counted_in_units.flux().unwrap().read())),
+            ("FluxMap::read_units", failure(counted_in_units.flux().unwrap().read_units())),
+            ("TablesStage::new", failure(TablesStage::new(gl, size))),
+            ("TablesStage::gather, camera standing", standing),
+            (
+                "TablesStage::gather, camera moved",
+                failure(tables.gather(surfaces, counted_in_units.flux().unwrap())),
+            ),
             ("PositionMaker::borrow", failure(PositionMaker::borrow(gl, depth))),
             ("PositionMaker::render", failure(positions.render(view))),
             ("SurfaceMaps::borrow", failure(SurfaceMaps::borrow(gl, *view, borrowed))),
@@ -193,7 +216,7 @@ impl Objects {
 
     fn into_boxes(self) -> Vec<Box<dyn Any>> {
         let Self { map, mask, maker, pipeline, adaptive, borrowed, timer, times, light, .. } = self;
-        let Light { host, pipeline: of_light, density, splat, gather } = light;
+        let Light { host, pipeline: of_light, density, splat, gather, counted_in_units, tables } = light;
         let HostPicture { positions, surfaces, photons, .. } = host;
         vec![
             Box::new(of_light),
@@ -203,6 +226,8 @@ impl Objects {
             Box::new(density),
             Box::new(splat),
             Box::new(gather),
+            Box::new(counted_in_units),
+            Box::new(tables),
             Box::new(map),
             Box::new(mask),
             Box::new(maker),

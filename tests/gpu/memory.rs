@@ -5,7 +5,8 @@
 use glam::UVec2;
 use varikernel::gl::DeviceInfo;
 use varikernel::settings::{
-    Edges, IrradianceSettings, KernelRadius, Laboratory, Method, Order, Planning, SatBuild, Search, Settings,
+    Edges, Estimate, IrradianceSettings, KernelRadius, Laboratory, Method, Order, Planning, SatBuild, Search,
+    Settings,
 };
 use varikernel::{
     Changed, CountBounds, DensityMap, Error, Frame, Gl, Image, IrradiancePipeline, Mask, RadiusPipeline,
@@ -276,24 +277,32 @@ fn a_pipeline_that_plans_is_resized_while_a_census_is_on_its_way() {
     assert_eq!(calls.all(), []);
 }
 
+/// Radii and estimates whose memory differs.
+const WAYS: [(KernelRadius, Estimate); 4] = [
+    (KernelRadius::Variable, Estimate::Splat),
+    (KernelRadius::Fixed(3), Estimate::Splat),
+    (KernelRadius::Fixed(3), Estimate::Gather { count_correction: true }),
+    (KernelRadius::Variable, Estimate::Tables),
+];
+
 #[test]
 fn irradiance_takes_what_it_says_and_resizes_without_compiling() {
     let gl = egl();
-    for radius in [KernelRadius::Variable, KernelRadius::Fixed(3)] {
-        let settings = IrradianceSettings { radius, ..IrradianceSettings::default() };
+    for (radius, estimate) in WAYS {
+        let settings = IrradianceSettings { radius, estimate, ..IrradianceSettings::default() };
         let mut pipeline = IrradiancePipeline::new(&gl, UVec2::ONE, settings).unwrap();
         let mut refused = 0;
         for size in SIZES {
             pipeline.resize(size).unwrap();
             let required = IrradiancePipeline::memory_required(size, &settings).unwrap();
-            assert_eq!(held(&gl), required, "{size}, {radius:?}");
+            assert_eq!(held(&gl), required, "{size}, {radius:?}, {estimate:?}");
             let HostPicture { surfaces, photons, positions, .. } = HostPicture::new(&gl, size);
             let hosts = u64::from(size.element_product()) * 16 + 40 * photons.count();
             // The first frame allocates nothing.
             let found = pipeline.render(&surfaces, &photons).unwrap().read().unwrap();
-            assert_eq!(held(&gl), required + hosts, "{size}, {radius:?}");
+            assert_eq!(held(&gl), required + hosts, "{size}, {radius:?}, {estimate:?}");
             let mut fresh = IrradiancePipeline::new(&gl, size, settings).unwrap();
-            assert_eq!(held(&gl), 2 * required + hosts, "{size}, {radius:?}");
+            assert_eq!(held(&gl), 2 * required + hosts, "{size}, {radius:?}, {estimate:?}");
             assert_eq!(fresh.render(&surfaces, &photons).unwrap().read().unwrap(), found);
             // Too large: nothing changes.
             let too_large = UVec2::new(gl.info().max_texture_size + 1, 1);
@@ -310,6 +319,29 @@ fn irradiance_takes_what_it_says_and_resizes_without_compiling() {
     let bytes = IrradiancePipeline::memory_required(UVec2::new(10, 3), &fixed).unwrap();
     assert_eq!(bytes, 30 * 52 + 4 * 256 * 256);
     assert!(IrradiancePipeline::memory_required(UVec2::new(0, 3), &fixed).is_err());
+    // 1920 x 1080: 36 bytes a pixel of counts and flux, and what the stage says of itself.
+    let tables = IrradianceSettings { estimate: Estimate::Tables, ..fixed };
+    let bytes = IrradiancePipeline::memory_required(UVec2::new(1920, 1080), &tables).unwrap();
+    assert_eq!(bytes / (1920 * 1080), 36 + 249);
+}
+
+#[test]
+fn a_pipeline_that_changes_to_tables_keeps_its_splat_and_counts_anew() {
+    let gl = egl();
+    let fixed = IrradianceSettings { radius: KernelRadius::Fixed(3), ..IrradianceSettings::default() };
+    let tables = IrradianceSettings { estimate: Estimate::Tables, ..fixed };
+    let mut pipeline = IrradiancePipeline::new(&gl, UVec2::new(9, 7), fixed).unwrap();
+    for size in SIZES {
+        let required = |settings| IrradiancePipeline::memory_required(size, settings).unwrap();
+        // 20 bytes a pixel of counts and power give way to 36, which are those of tables as well.
+        let pixels = u64::from(size.element_product());
+        let both = required(&fixed) - 20 * pixels + required(&tables);
+        pipeline.change(tables).unwrap();
+        pipeline.resize(size).unwrap();
+        assert_eq!(held(&gl), both, "{size}");
+        pipeline.change(fixed).unwrap();
+        assert_eq!(held(&gl), both - 16 * pixels, "{size}");
+    }
 }
 
 #[test]
@@ -317,10 +349,14 @@ fn a_resized_irradiance_pipeline_compiles_nothing() {
     let calls = Calls::new();
     // SAFETY: a trampoline calls the command that it stands for.
     let gl = unsafe { driver::open_through(counted) };
-    let mut pipeline = IrradiancePipeline::new(&gl, UVec2::new(9, 9), IrradianceSettings::default()).unwrap();
-    let compiled = || calls.of("glCompileShader") + calls.of("glLinkProgram");
-    let before = compiled();
-    assert!(before > 0);
-    pipeline.resize(UVec2::new(40, 20)).unwrap();
-    assert_eq!(compiled(), before);
+    for (radius, estimate) in WAYS {
+        let settings = IrradianceSettings { radius, estimate, ..IrradianceSettings::default() };
+        let compiled = || calls.of("glCompileShader") + calls.of("glLinkProgram");
+        let none = compiled();
+        let mut pipeline = IrradiancePipeline::new(&gl, UVec2::new(9, 9), settings).unwrap();
+        let before = compiled();
+        assert!(before > none);
+        pipeline.resize(UVec2::new(40, 20)).unwrap();
+        assert_eq!(compiled(), before, "{radius:?}, {estimate:?}");
+    }
 }

@@ -86,7 +86,7 @@ fn fail_in_pictures(gl: &varikernel::Gl) {
     let alive = live();
     let scene = varikernel::scene::Scene::shipped("cornell-glass").unwrap();
     let photons = crate::stage::traced(&scene, 100, 1);
-    for estimate in [Estimate::Splat, Estimate::Gather { count_correction: false }] {
+    for estimate in [Estimate::Splat, Estimate::Gather { count_correction: false }, Estimate::Tables] {
         let settings = PictureSettings {
             size: UVec2::splat(8),
             light_samples: 1,

@@ -234,6 +234,7 @@ fn every_stage_of_a_picture_runs_on_the_commands_of_3_3_core_alone() {
         let mut all: Vec<_> = Kernel::ALL.map(|kernel| PictureSettings { kernel, ..usual }).to_vec();
         all.push(PictureSettings { radius: KernelRadius::Fixed(3), ..usual });
         all.push(PictureSettings { estimate: Estimate::Gather { count_correction: true }, ..usual });
+        all.push(PictureSettings { estimate: Estimate::Tables, ..usual });
         for settings in all {
             let (_, account) = renderer.picture(&settings).unwrap();
             let keeps_energy = settings.estimate == Estimate::Splat;

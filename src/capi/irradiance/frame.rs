@@ -1,38 +1,15 @@
 //! What a frame of photons brings, as plain structs of C.
 
-use std::mem::offset_of;
 use std::num::NonZeroU32;
 
 use glam::{Mat4, UVec2};
 
+use super::photon_buffer::PlainPhotonTotals;
 use super::{Failure, Positions, Status, answer, check_place, check_size, flag, texture};
 use crate::gl::Gl;
 use crate::maps::{HostDepth, PositionMaker};
 use crate::maps::{HostSurfaces, PhotonPoints, SurfaceMaps};
-use crate::photon::PhotonPoint;
 use crate::view::View;
-
-/// A photon in a vertex buffer of the host.
-#[repr(C)]
-#[derive(Clone, Copy, Debug)]
-pub struct PlainPhoton {
-    /// Where it landed, in scene units.
-    pub position: [f32; 3],
-    /// Of the surface, of length 1, on the side from which the photon came.
-    pub normal: [f32; 3],
-    /// Linear RGB: its share of the power of all lights.
-    pub power: [f32; 3],
-    /// The number of the surface, as normal_texture has it; 1 where surfaces have none.
-    pub surface: f32,
-}
-
-const _: () = assert!(
-    size_of::<PlainPhoton>() == size_of::<PhotonPoint>()
-        && offset_of!(PlainPhoton, position) == offset_of!(PhotonPoint, position)
-        && offset_of!(PlainPhoton, normal) == offset_of!(PhotonPoint, normal)
-        && offset_of!(PlainPhoton, power) == offset_of!(PhotonPoint, power)
-        && offset_of!(PlainPhoton, surface) == offset_of!(PhotonPoint, surface)
-);
 
 /// One frame of photons on surfaces. Fill it with varikernel_irradiance_frame_default, then say what you
 /// have.
@@ -53,9 +30,14 @@ pub struct PlainIrradianceFrame {
     pub photon_buffer: u32,
     /// Photons to take from its beginning.
     pub photon_count: u32,
+    /// What these photons carry together, for VARIKERNEL_ESTIMATE_TABLES; else it may be null, the default.
+    pub photon_totals: *const PlainPhotonTotals,
     /// 1 to add these photons' light to that of the frames before, for the same surfaces and camera: of k
     /// such frames, the sum is k times the light. 0 to forget those. Default 0.
     pub added: u32,
+    /// 1 if camera and surfaces are those of the frame before, though the photons are new: what
+    /// VARIKERNEL_ESTIMATE_TABLES needs of them alone is then kept. 0 to make it anew. Default 0.
+    pub same_camera: u32,
     /// With from_depth: 1 if the far plane is at 0, else 0. Default 0.
     pub depth_reversed: u32,
     /// With from_depth: 1 if depth in clip space goes from 0 to 1, as GL_ZERO_TO_ONE of glClipControl, else
@@ -88,7 +70,9 @@ pub unsafe extern "C" fn varikernel_irradiance_frame_default(
             normal_texture: 0,
             photon_buffer: 0,
             photon_count: 0,
+            photon_totals: std::ptr::null(),
             added: 0,
+            same_camera: 0,
             depth_reversed: 0,
             depth_zero_to_one: 0,
             view: [0.0; 16],
@@ -100,11 +84,38 @@ pub unsafe extern "C" fn varikernel_irradiance_frame_default(
     })
 }
 
+/// What a frame keeps of those before.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Kept {
+    Nothing,
+    Camera,
+    /// And the photons with their light.
+    All,
+}
+
 impl PlainIrradianceFrame {
-    /// Whether the photons join those before.
-    pub(super) fn read_added(&self) -> Result<bool, Failure> {
+    /// What is kept of the frames before.
+    pub(super) fn read_kept(&self) -> Result<Kept, Failure> {
         check_size("varikernel_irradiance_frame", self.struct_size, SIZE)?;
-        flag("added", self.added)
+        Ok(match (flag("added", self.added)?, flag("same_camera", self.same_camera)?) {
+            (true, _) => Kept::All,
+            (false, true) => Kept::Camera,
+            (false, false) => Kept::Nothing,
+        })
+    }
+
+    /// Photons, with what they carry together where the host says it.
+    fn borrow_photons(&self, gl: &Gl) -> Result<PhotonPoints, Failure> {
+        let buffer = NonZeroU32::new(self.photon_buffer).map(glow::NativeBuffer);
+        let buffer = buffer.ok_or_else(|| crate::capi::null("photon_buffer"))?;
+        // SAFETY: the host gives totals or null.
+        let totals = unsafe { self.photon_totals.as_ref() };
+        let totals = totals.map(|totals| totals.read(self.photon_count)).transpose()?;
+        let mut photons = PhotonPoints::borrow(gl, buffer, self.photon_count)?;
+        if let Some(totals) = totals {
+            photons.set_totals(totals);
+        }
+        Ok(photons)
     }
 
     /// Surfaces and photons, borrowed for this frame.
@@ -117,8 +128,7 @@ impl PlainIrradianceFrame {
         let named = |name: u32, what: &str| texture(name).ok_or_else(|| crate::capi::null(what));
         let position = named(self.position_texture, "position_texture")?;
         let normal = named(self.normal_texture, "normal_texture")?;
-        let buffer = NonZeroU32::new(self.photon_buffer).map(glow::NativeBuffer);
-        let buffer = buffer.ok_or_else(|| crate::capi::null("photon_buffer"))?;
+        let photons = self.borrow_photons(gl)?;
         let [view, projection] = [&self.view, &self.projection].map(Mat4::from_cols_array);
         let view = View::from_matrices(view, projection, size)?;
         let depth = HostDepth {
@@ -135,6 +145,6 @@ impl PlainIrradianceFrame {
             }
         };
         let surfaces = SurfaceMaps::borrow(gl, view, HostSurfaces { position, normal })?;
-        Ok((surfaces, PhotonPoints::borrow(gl, buffer, self.photon_count)?))
+        Ok((surfaces, photons))
     }
 }

@@ -1,6 +1,7 @@
 //! Photons and a g-buffer in, irradiance texture out.
 
 mod frame;
+mod photon_buffer;
 mod settings;
 
 use glam::UVec2;
@@ -12,7 +13,8 @@ use super::{
 use crate::light::IrradiancePipeline;
 use crate::maps::RadiusMap;
 use crate::maps::{HostDepth, PositionMaker};
-use frame::PlainIrradianceFrame;
+use crate::settings::Estimate;
+use frame::{Kept, PlainIrradianceFrame};
 use settings::PlainIrradianceSettings;
 
 /// Photons and surfaces in, irradiance out, for one size and one set of settings.
@@ -65,11 +67,13 @@ pub unsafe extern "C" fn varikernel_irradiance_create(
     })
 }
 
-/// Finds the light that photons bring to the surfaces: counts them, finds radii, draws a kernel for each.
+/// Finds the light that photons bring to the surfaces: counts them, finds radii, draws a kernel for each; or
+/// as settings say by estimate.
 ///
 /// `*irradiance_texture` is a GL_TEXTURE_2D in GL_RGBA32F, a sampler2D in your shaders: power per area in
 /// scene units, linear RGB; light that leaves a diffuse surface is albedo / pi of it. `*radius_texture` is as
-/// that of varikernel_pipeline_render, or 0 for a fixed radius; the pointer may be null. Both belong to the
+/// that of varikernel_pipeline_render, or 0 for a fixed radius; of VARIKERNEL_ESTIMATE_TABLES it says how
+/// wide each pixel's light was gathered, 0 where nothing is lit. The pointer may be null. Both belong to the
 /// handle and hold until its next frame.
 ///
 /// Waits for the GPU only where a pixel may hold 2^24 photons. With from_depth, a shader is compiled when a
@@ -91,15 +95,26 @@ pub unsafe extern "C" fn varikernel_irradiance_render(
         let frame = unsafe { given(frame, "frame") }?;
         check_place(irradiance_texture, "irradiance_texture")?;
         let (light, radius) = irradiance.0.with(|gl, stages| {
-            let is_added = frame.read_added()?;
-            let (surfaces, photons) = frame.borrow(gl, stages.size, &mut stages.positions)?;
+            let kept = frame.read_kept()?;
             let pipeline = &mut stages.pipeline;
-            let light = if is_added {
-                pipeline.add(&surfaces, &photons)
-            } else {
-                pipeline.render(&surfaces, &photons)
-            }?
-            .texture();
+            if pipeline.settings().estimate == Estimate::Tables && frame.photon_totals.is_null() {
+                return Err(Failure::new(
+                    Status::InvalidArgument,
+                    "photon_totals is null\n\
+                     help: light from tables has to know what the photons carry together: call \
+                     varikernel_photon_totals_of, or fill in sums of yours; an upper bound will do",
+                ));
+            }
+            let (surfaces, photons) = frame.borrow(gl, stages.size, &mut stages.positions)?;
+            match kept {
+                Kept::Nothing => pipeline.clear(),
+                Kept::Camera => {
+                    pipeline.clear_photons();
+                    pipeline.clear_light();
+                }
+                Kept::All => (),
+            }
+            let light = pipeline.add(&surfaces, &photons)?.texture();
             Ok((light, pipeline.radii().map(RadiusMap::texture)))
         })?;
         if !radius_texture.is_null() {

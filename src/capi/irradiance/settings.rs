@@ -2,7 +2,7 @@
 
 use super::{Failure, Status, answer, check_place, check_size, flag, out_of_range};
 use crate::capi::settings::{read_edges, write_edges};
-use crate::settings::{IrradianceSettings, Kernel, KernelRadius, Search, Settings};
+use crate::settings::{Estimate, IrradianceSettings, Kernel, KernelRadius, Search, Settings};
 
 /// kernel: the same everywhere on the disc.
 pub const VARIKERNEL_KERNEL_BOX: u32 = 0;
@@ -28,6 +28,28 @@ const KERNELS: [(u32, Kernel); 5] = [
     (VARIKERNEL_KERNEL_GAUSSIAN, Kernel::Gaussian),
 ];
 
+/// estimate: each photon spreads its power over the pixels around it, with the radius of its own pixel.
+pub const VARIKERNEL_ESTIMATE_SPLAT: u32 = 0;
+
+/// estimate: each pixel gathers the power around it, with its own radius.
+pub const VARIKERNEL_ESTIMATE_GATHER: u32 = 1;
+
+/// estimate: the same, and of what c photons give (c - 1) / c is taken, as a radius that ends at a photon
+/// asks for.
+pub const VARIKERNEL_ESTIMATE_GATHER_CORRECTED: u32 = 2;
+
+/// estimate: each pixel gathers from summed-area tables, as wide as a test of noise allows. No kernel, no
+/// min_photons and no radius is asked for; frames have to bring photon_totals.
+pub const VARIKERNEL_ESTIMATE_TABLES: u32 = 3;
+
+/// All of them by their numbers.
+const ESTIMATES: [(u32, Estimate); 4] = [
+    (VARIKERNEL_ESTIMATE_SPLAT, Estimate::Splat),
+    (VARIKERNEL_ESTIMATE_GATHER, Estimate::Gather { count_correction: false }),
+    (VARIKERNEL_ESTIMATE_GATHER_CORRECTED, Estimate::Gather { count_correction: true }),
+    (VARIKERNEL_ESTIMATE_TABLES, Estimate::Tables),
+];
+
 /// How photons become irradiance. Fill it with varikernel_irradiance_settings_default, then change what you
 /// like.
 #[repr(C)]
@@ -48,6 +70,8 @@ pub struct PlainIrradianceSettings {
     pub kernel: u32,
     /// 1 if the host brings a depth buffer in place of positions, else 0. Default 0.
     pub from_depth: u32,
+    /// How photons become light: VARIKERNEL_ESTIMATE_... Default VARIKERNEL_ESTIMATE_SPLAT.
+    pub estimate: u32,
 }
 
 const SIZE: usize = size_of::<PlainIrradianceSettings>();
@@ -74,8 +98,9 @@ pub unsafe extern "C" fn varikernel_irradiance_settings_default(
             min_photons,
             max_radius,
             edges: write_edges(edges),
-            kernel: number_of(usual.kernel),
+            kernel: number_of(&KERNELS, usual.kernel),
             from_depth: 0,
+            estimate: number_of(&ESTIMATES, usual.estimate),
         };
         // SAFETY: the host gives a pointer to write to.
         unsafe { settings.write(plain) };
@@ -83,9 +108,14 @@ pub unsafe extern "C" fn varikernel_irradiance_settings_default(
     })
 }
 
-fn number_of(kernel: Kernel) -> u32 {
-    let of_kernel = KERNELS.into_iter().find(|(_, known)| *known == kernel);
-    of_kernel.expect("each kernel has a number").0
+fn number_of<T: Copy + PartialEq>(all: &[(u32, T)], choice: T) -> u32 {
+    all.iter().find(|(_, known)| *known == choice).expect("each choice has a number").0
+}
+
+fn choice_of<T: Copy>(all: &[(u32, T)], name: &'static str, number: u32) -> Result<T, Failure> {
+    let known = all.iter().find(|(known, _)| *known == number);
+    let reason = || format!("it is one of VARIKERNEL_{}_...", name.to_uppercase());
+    known.map(|(_, choice)| *choice).ok_or_else(|| out_of_range(name, number, &reason()))
 }
 
 impl PlainIrradianceSettings {
@@ -94,7 +124,6 @@ impl PlainIrradianceSettings {
     pub(super) fn read(&self) -> Result<(IrradianceSettings, bool), Failure> {
         check_size("varikernel_irradiance_settings", self.struct_size, SIZE)?;
         let usual = IrradianceSettings::default();
-        let kernel = KERNELS.into_iter().find(|(number, _)| *number == self.kernel).map(|(_, kernel)| kernel);
         let search = Search {
             min_photons: self.min_photons,
             max_radius: self.max_radius,
@@ -107,9 +136,8 @@ impl PlainIrradianceSettings {
                 radius => KernelRadius::Fixed(radius),
             },
             radii: Settings { search, ..usual.radii },
-            kernel: kernel
-                .ok_or_else(|| out_of_range("kernel", self.kernel, "it is one of VARIKERNEL_KERNEL_..."))?,
-            ..usual
+            kernel: choice_of(&KERNELS, "kernel", self.kernel)?,
+            estimate: choice_of(&ESTIMATES, "estimate", self.estimate)?,
         };
         Ok((settings, flag("from_depth", self.from_depth)?))
     }

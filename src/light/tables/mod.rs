@@ -9,7 +9,7 @@
 //! - There is no n: where photons are many or light changes, boxes stay small.
 //! - Exact: sums of whole numbers modulo 2^32, the same whatever the order of the photons (see
 //!   [`FluxMap`]). Quotients are f32.
-//! - Cost: whatever the number of photons and the widths. Memory: about 140 bytes a pixel.
+//! - Cost: whatever the number of photons and the widths. Memory: about 250 bytes a pixel.
 //!
 //! After F. Rousselle, C. Knaus, M. Zwicker, "Adaptive sampling and reconstruction using greedy error
 //! minimization" (2011), on the tables of F. Crow (1984).

@@ -50,6 +50,36 @@ fn other_settings_give_what_a_new_pipeline_would_and_a_failure_leaves_the_old_on
     assert_eq!(pipeline.irradiance().size(), 2 * size);
 }
 
+/// Photons are counted otherwise for tables: there are none after a change to these or from them.
+#[test]
+fn tables_count_anew_and_give_what_a_new_pipeline_would() {
+    let gl = egl();
+    let stand = Stand::new(&gl, 3000);
+    let (size, points) = (UVec2::splat(SIDE), stand.uploaded(&gl));
+    let splat = settings(KernelRadius::Variable);
+    let tables = IrradianceSettings { estimate: Estimate::Tables, ..splat };
+    let mut pipeline = IrradiancePipeline::new(&gl, size, splat).unwrap();
+    pipeline.count(&stand.surfaces, &points).unwrap();
+    let mut lights = Vec::new();
+    for asked in [tables, splat, tables, tables] {
+        let is_other = *pipeline.settings() != asked;
+        pipeline.change(asked).unwrap();
+        assert_eq!(pipeline.density_stage().drawn(), if is_other { 0 } else { points.count() });
+        assert_eq!(
+            (pipeline.flux().is_some(), pipeline.power().is_some()),
+            (asked == tables, asked == splat)
+        );
+        pipeline.clear();
+        let found = pipeline.add(&stand.surfaces, &points).unwrap().read().unwrap();
+        let mut fresh = IrradiancePipeline::new(&gl, size, asked).unwrap();
+        assert!(fresh.render(&stand.surfaces, &points).unwrap().read().unwrap() == found, "{asked:?}");
+        let widths = pipeline.radii().unwrap().read().unwrap();
+        assert!(widths == fresh.radii().unwrap().read().unwrap(), "{asked:?}");
+        lights.push(found);
+    }
+    assert!(lights[0] == lights[2] && lights[2] == lights[3] && lights[0] != lights[1]);
+}
+
 #[test]
 fn what_was_compiled_stays_also_where_each_frame_is_planned() {
     let mut calls = Calls::new();

@@ -1,10 +1,10 @@
 //! Every public call around photons and a host's g-buffer, those that fail included.
 
 use glam::UVec2;
-use varikernel::settings::{IrradianceSettings, KernelRadius};
+use varikernel::settings::{Estimate, IrradianceSettings, KernelRadius};
 use varikernel::{
     DensityStage, GatherStage, HostDepth, HostSurfaces, IrradiancePipeline, KernelRadii, PhotonPoints,
-    PositionMaker, SplatStage, SurfaceMaps,
+    PositionMaker, SplatStage, SurfaceMaps, TablesStage,
 };
 
 use super::host::fail_at_each;
@@ -20,21 +20,29 @@ pub(super) fn all(watch: &Watch<'_>) {
     surfaces.set_view(view).unwrap();
     photons.replace(&HostPicture::photons(500)).unwrap();
     watch.unchanged("PhotonPoints::replace");
-    for radius in [KernelRadius::Variable, KernelRadius::Fixed(2)] {
-        let settings = IrradianceSettings { radius, ..IrradianceSettings::default() };
+    for (radius, estimate) in [
+        (KernelRadius::Variable, Estimate::Splat),
+        (KernelRadius::Fixed(2), Estimate::Splat),
+        (KernelRadius::Variable, Estimate::Tables),
+    ] {
+        let settings = IrradianceSettings { radius, estimate, ..IrradianceSettings::default() };
         let mut pipeline = IrradiancePipeline::new(gl, SIZE, settings).unwrap();
         watch.unchanged("IrradiancePipeline::new");
         let light = pipeline.render(&surfaces, &photons).unwrap();
         watch.unchanged("IrradiancePipeline::render");
         let light = light.read().unwrap();
         watch.unchanged("IrradianceMap::read");
-        assert!(light.values().iter().any(|&[red, ..]| red > 0.0), "{radius:?}: there is light");
+        assert!(
+            light.values().iter().any(|&[red, ..]| red > 0.0),
+            "{radius:?}, {estimate:?}: there is light"
+        );
         pipeline.add(&surfaces, &photons).unwrap();
         watch.unchanged("IrradiancePipeline::add");
         pipeline.clear();
         watch.unchanged("IrradiancePipeline::clear");
     }
     stages(watch, &surfaces, &photons);
+    tables(watch, &surfaces, &photons);
 
     // Calls that fail.
     let mut other = IrradiancePipeline::new(gl, UVec2::ONE, IrradianceSettings::default()).unwrap();
@@ -58,6 +66,45 @@ pub(super) fn all(watch: &Watch<'_>) {
     assert!(failures >= 12, "{failures}");
     drop((positions, surfaces, photons, other));
     watch.unchanged("dropping everything");
+}
+
+/// Those of light from tables, and a pipeline that goes over to it.
+fn tables(watch: &Watch<'_>, surfaces: &SurfaceMaps, photons: &PhotonPoints) {
+    let gl = &watch.gl;
+    let mut density = DensityStage::with_flux(gl, SIZE).unwrap();
+    watch.unchanged("DensityStage::with_flux");
+    // The second addition makes units coarser.
+    for _ in 0..2 {
+        density.add(surfaces, photons).unwrap();
+        watch.unchanged("DensityStage::add, in units");
+    }
+    density.flux().unwrap().read_units().unwrap();
+    watch.unchanged("FluxMap::read_units");
+    let mut stage = TablesStage::new(gl, SIZE).unwrap();
+    watch.unchanged("TablesStage::new");
+    for _ in 0..2 {
+        stage.gather(surfaces, density.flux().unwrap()).unwrap();
+        watch.unchanged("TablesStage::gather");
+    }
+    stage.forget_camera();
+    watch.unchanged("TablesStage::forget_camera");
+    let mut small = TablesStage::new(gl, UVec2::ONE).unwrap();
+    assert!(small.gather(surfaces, density.flux().unwrap()).is_err());
+    watch.unchanged("TablesStage::gather that fails");
+    let unknown = PhotonPoints::borrow(gl, watch.buffer(), 1).unwrap();
+    assert!(density.add(surfaces, &unknown).is_err());
+    watch.unchanged("DensityStage::add of photons that are not known");
+    let mut pipeline = IrradiancePipeline::new(gl, SIZE, IrradianceSettings::default()).unwrap();
+    let tables = IrradianceSettings { estimate: Estimate::Tables, ..IrradianceSettings::default() };
+    pipeline.change(tables).unwrap();
+    watch.unchanged("IrradiancePipeline::change");
+    pipeline.resize(2 * SIZE).unwrap();
+    watch.unchanged("IrradiancePipeline::resize");
+    let failures = fail_at_each(
+        || IrradiancePipeline::new(gl, SIZE, tables),
+        |failure| watch.unchanged(&format!("IrradiancePipeline::new's failure {failure}, tables")),
+    );
+    assert!(failures >= 40, "{failures}");
 }
 
 fn stages(watch: &Watch<'_>, surfaces: &SurfaceMaps, photons: &PhotonPoints) {

@@ -74,7 +74,7 @@ fn stages(watch: &Watch<'_>, scene: &Scene, settings: &PictureSettings) {
     renderer.search().unwrap();
     watch.unchanged("Renderer::search");
     for radius in [KernelRadius::Variable, KernelRadius::Fixed(2)] {
-        for estimate in [Estimate::Splat, Estimate::Gather { count_correction: false }] {
+        for estimate in [Estimate::Splat, Estimate::Gather { count_correction: false }, Estimate::Tables] {
             let settings = PictureSettings { radius, estimate, ..*settings };
             renderer.change(&settings).unwrap();
             watch.unchanged("Renderer::change");
