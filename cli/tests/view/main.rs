@@ -16,7 +16,7 @@ use varikernel::Image;
 use varikernel::image::{Colours, read_colours, write_colours};
 
 /// A picture that is soon done, the same each time.
-const SMALL: [&str; 9] = [
+const SMALL: [&str; 11] = [
     "cornell-boxes",
     "--size",
     "64x64",
@@ -26,6 +26,8 @@ const SMALL: [&str; 9] = [
     "4",
     "--photons-per-frame",
     "5000",
+    "--light",
+    "splat",
 ];
 const DONE: &str = "step 4, done";
 
