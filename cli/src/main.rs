@@ -7,6 +7,7 @@ mod devices;
 mod figures;
 mod glsl;
 mod interrupt;
+mod light;
 mod method_options;
 mod numbers;
 mod output;

@@ -6,7 +6,7 @@ use glam::{UVec2, Vec3};
 use varikernel::photon::{Emission, PhotonPoint, TraceSettings, trace};
 use varikernel::render::{Live, LiveSettings, Renderer};
 use varikernel::scene::Scene;
-use varikernel::settings::{KernelRadius, PictureSettings};
+use varikernel::settings::{Estimate, KernelRadius, PictureSettings};
 use varikernel::{Error, Gl, Image};
 
 use crate::support::{egl, rmse};
@@ -173,4 +173,23 @@ fn a_pixel_says_why_its_radius_is_what_it_is() {
     // The box does not fill the picture.
     assert!(bounded > 20 && named > 80, "{bounded} {named}");
     assert!(live.inspect(UVec2::splat(SIDE)).is_err());
+}
+
+#[test]
+fn a_pixel_says_how_wide_its_light_from_tables_is() {
+    let gl = egl();
+    let scene = scene("cornell-boxes");
+    let mut settings = settings(&scene);
+    settings.irradiance.estimate = Estimate::Tables;
+    let mut live = after(&gl, &scene, settings, 0);
+    assert_eq!(live.inspect(UVec2::splat(9)).unwrap().radius, 0, "no light yet");
+    live.step().unwrap();
+    assert!(live.radii().is_some() && live.limited().is_none());
+    let seen: Vec<_> = (0..SIDE * SIDE)
+        .map(|place| live.inspect(UVec2::new(place % SIDE, place / SIDE)).unwrap())
+        .collect();
+    assert!(seen.iter().all(|pixel| pixel.radius <= 64 && pixel.within >= pixel.photons));
+    let wide = seen.iter().filter(|pixel| pixel.radius > 0).count();
+    assert!(wide > seen.len() / 2 && wide < seen.len(), "{wide} of {}", seen.len());
+    assert!(seen.iter().all(|pixel| pixel.radius > 0 || pixel.within == pixel.photons));
 }

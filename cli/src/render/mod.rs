@@ -20,6 +20,7 @@ pub(super) use source::Source;
 use self::files::{attributes, write};
 use self::report::Report;
 use self::stages::Stages;
+use super::light::Light;
 use super::numbers::whole_checked_later;
 use super::photons::load;
 use super::words::in_words_of_options;
@@ -84,24 +85,9 @@ pub(crate) struct Args {
     json: bool,
 }
 
-/// How photons become light.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-pub(super) enum Light {
-    /// Each pixel gathers from summed-area tables, as wide as a test of noise allows: fast, and without n.
-    Tables,
-    /// Each photon is drawn as its kernel, which keeps its energy (thesis 2.6.2).
-    Splat,
-    /// Each pixel gathers the photons around it with its own kernel.
-    Gather,
-}
-
 impl Args {
     fn estimate(&self) -> Estimate {
-        match self.light {
-            Light::Tables => Estimate::Tables,
-            Light::Splat => Estimate::Splat,
-            Light::Gather => Estimate::Gather { count_correction: self.count_correction },
-        }
+        self.light.estimate(self.count_correction)
     }
 
     /// Refuses what light from tables does not ask for.

@@ -9,7 +9,7 @@ use varikernel::image::colour_of_bar;
 
 use super::screen::{Placement, Side};
 use super::state::{Beside, State};
-use super::views::{View, place, ticks};
+use super::views::{Maps, View, place, ticks};
 
 /// Height of the strip of legends below the picture, in points.
 const LEGENDS: f32 = 52.0;
@@ -62,11 +62,16 @@ pub(super) fn show(ui: &mut Ui, state: &mut State, texture: TextureId) -> Spot {
     }
     let line = picture.left() + state.split * picture.width();
     if has_line {
-        draw_line(ui, state, picture, line);
+        draw_line(ui, state, &maps, picture, line);
     }
-    if !has_line && state.view == View::Radius && maps.radii.is_none() && state.engine.steps() > 0 {
+    let absent = match state.view {
+        View::Radius if maps.radii.is_none() => Some("the radius is fixed"),
+        View::Limited if maps.limited.is_none() => Some("no radii are searched"),
+        _ => None,
+    };
+    if let Some(text) = absent.filter(|_| !has_line && state.engine.steps() > 0) {
         let font = FontId::proportional(15.0);
-        painter.text(picture.center(), Align2::CENTER_CENTER, "the radius is fixed", font, Color32::GRAY);
+        painter.text(picture.center(), Align2::CENTER_CENTER, text, font, Color32::GRAY);
     }
     legends(ui, state, below);
     let split = if has_line { (line - rect.left()) * scale } else { canvas.x + 1.0 };
@@ -105,7 +110,7 @@ fn mouse(ui: &Ui, state: &mut State, response: &Response, picture: Rect, line: O
 }
 
 /// The line, with the names of its sides.
-fn draw_line(ui: &Ui, state: &State, picture: Rect, line: f32) {
+fn draw_line(ui: &Ui, state: &State, maps: &Maps, picture: Rect, line: f32) {
     let painter = ui.painter_at(picture);
     painter.vline(line, picture.y_range(), Stroke::new(3.0, Color32::from_black_alpha(120)));
     painter.vline(line, picture.y_range(), Stroke::new(1.0, Color32::WHITE));
@@ -115,17 +120,15 @@ fn draw_line(ui: &Ui, state: &State, picture: Rect, line: f32) {
         Color32::from_black_alpha(160),
         Stroke::new(1.0, Color32::WHITE),
     );
-    let other = match state.beside {
-        Beside::View(view) => format!("B  {}", view.name()),
-        Beside::Snapshot | Beside::Nothing => {
-            let words = state.snapshot.as_ref().map_or("", |snapshot| snapshot.words.as_str());
-            format!("B  {} of the snapshot, {words}", state.view.name())
-        }
+    let [a, b] = sides(state, maps).map(|side| side.maps.name(side.view));
+    let other = match (state.beside, &state.snapshot) {
+        (Beside::Snapshot, Some(snapshot)) => format!("B  {b} of the snapshot, {}", snapshot.words),
+        _ => format!("B  {b}"),
     };
     let font = FontId::proportional(13.0);
     let top = picture.top() + 7.0;
     for (at, align, text) in [
-        (pos2(line - 10.0, top), Align2::RIGHT_TOP, format!("A  {}", state.view.name())),
+        (pos2(line - 10.0, top), Align2::RIGHT_TOP, format!("A  {a}")),
         (pos2(line + 10.0, top), Align2::LEFT_TOP, other),
     ] {
         let galley = painter.layout_no_wrap(text, font.clone(), Color32::WHITE);
@@ -136,7 +139,7 @@ fn draw_line(ui: &Ui, state: &State, picture: Rect, line: f32) {
 }
 
 /// What the two sides show: the picture itself may be one of them.
-pub(super) fn sides<'a>(state: &'a State, maps: &'a super::views::Maps) -> [Side<'a>; 2] {
+pub(super) fn sides<'a>(state: &'a State, maps: &'a Maps) -> [Side<'a>; 2] {
     let a = Side { maps, view: state.view };
     let b = match (state.beside, &state.snapshot) {
         (Beside::View(view), _) => Side { maps, view },
@@ -164,8 +167,12 @@ fn legends(ui: &Ui, state: &State, strip: Rect) {
 fn legend(ui: &Ui, state: &State, side: &Side<'_>, rect: Rect, letter: &str) {
     let painter = ui.painter();
     let (font, ink) = (FontId::proportional(12.0), Color32::from_gray(205));
-    let Some(unit) = side.view.unit() else {
-        let text = format!("{letter}{}, tone-mapped at {:+.1} stops", side.view.name(), state.tone.exposure);
+    let Some(unit) = side.maps.unit(side.view) else {
+        let text = format!(
+            "{letter}{}, tone-mapped at {:+.1} stops",
+            side.maps.name(side.view),
+            state.tone.exposure
+        );
         painter.text(rect.center(), Align2::CENTER_CENTER, text, font, ink);
         return;
     };

@@ -30,6 +30,7 @@ use varikernel::glam::UVec2;
 use varikernel::image::{Format, check_writable};
 use varikernel::settings::{Edges, Kernel, KernelRadius, MAX_RADIUS_LIMIT, Method, Order};
 
+use super::light::Light;
 use super::numbers::{fraction, whole};
 use super::photons::parse_count;
 use super::render::parse_radius;
@@ -74,6 +75,11 @@ pub(crate) struct Args {
     #[arg(help_heading = "Window")]
     window: UVec2,
 
+    /// How a scene's photons become light; options about kernels are for splat and gather.
+    #[arg(long, value_enum, default_value_t = Light::Tables)]
+    #[arg(help_heading = "Light")]
+    light: Light,
+
     /// n: photons that a kernel or box has to hold [default: 400 for scenes, 25 for maps].
     #[arg(short = 'n', long, value_name = "N")]
     #[arg(value_parser = whole(1..=u32::MAX), allow_negative_numbers = true)]
@@ -86,15 +92,15 @@ pub(crate) struct Args {
     #[arg(help_heading = "Kernels")]
     max_radius: Option<u32>,
 
-    /// Width of the kernels: `variable`, or `fixed:PIXELS` for the same everywhere.
-    #[arg(long, default_value = "variable", value_parser = parse_radius, value_name = "RADIUS")]
+    /// Width of the kernels: `variable`, or `fixed:PIXELS` for the same everywhere [default: variable].
+    #[arg(long, value_parser = parse_radius, value_name = "RADIUS")]
     #[arg(help_heading = "Kernels")]
-    radius: KernelRadius,
+    radius: Option<KernelRadius>,
 
-    /// Falloff of a kernel from its middle to its edge.
-    #[arg(long, value_enum, default_value_t = Kernel::Silverman)]
+    /// Falloff of a kernel from its middle to its edge [default: silverman].
+    #[arg(long, value_enum)]
     #[arg(help_heading = "Kernels")]
-    kernel: Kernel,
+    kernel: Option<Kernel>,
 
     /// Photons of each frame [default: as many as frames of 100 ms have time for].
     #[arg(long, value_parser = parse_count, value_name = "NUMBER", allow_negative_numbers = true)]
@@ -199,23 +205,44 @@ fn check_source(path: &Path) -> Result<()> {
     Ok(())
 }
 
+/// Light from tables has none of what these options are about.
+fn refuse_kernels(args: &Args) -> Result<()> {
+    let given = [
+        ("-n", args.min_photons.is_some()),
+        ("-r", args.max_radius.is_some()),
+        ("--radius", args.radius.is_some()),
+        ("--kernel", args.kernel.is_some()),
+    ];
+    match given.into_iter().find(|(_, is_given)| *is_given) {
+        Some((option, _)) => {
+            bail!("{option} is about kernels, and light from tables has none\nhelp: add `--light splat`")
+        }
+        None => Ok(()),
+    }
+}
+
 fn choices(args: &Args) -> Result<Choices> {
     if is_settings(&args.source) {
         return Choices::load(&args.source);
     }
-    let (n, max) = if Format::of(&args.source).is_ok() { (25, 32) } else { (400, 64) };
+    let is_map = Format::of(&args.source).is_ok();
+    if !is_map && args.light == Light::Tables {
+        refuse_kernels(args)?;
+    }
+    let (n, max) = if is_map { (25, 32) } else { (400, 64) };
     let (variable, fixed_radius) = match args.radius {
-        KernelRadius::Variable => (true, 2),
-        KernelRadius::Fixed(radius) => (false, radius),
+        None | Some(KernelRadius::Variable) => (true, 2),
+        Some(KernelRadius::Fixed(radius)) => (false, radius),
     };
     Ok(Choices {
         source: args.source.to_string_lossy().into_owned(),
         size: args.size.to_array(),
+        light: args.light,
         variable,
         fixed_radius,
         min_photons: args.min_photons.unwrap_or(n),
         max_radius: args.max_radius.unwrap_or(max),
-        kernel: args.kernel,
+        kernel: args.kernel.unwrap_or(Kernel::Silverman),
         method: Method::SummedAreaTable,
         order: Order::Bracketed,
         edges: Edges::Scale,

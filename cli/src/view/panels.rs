@@ -8,18 +8,19 @@ use varikernel::settings::{Edges, Kernel, MAX_PICTURE_RADIUS, Method, Order};
 use super::choices::{LEAST_A_FRAME, MOST_A_FRAME, word};
 use super::state::{Beside, State, grouped};
 use super::views::View;
+use crate::light::Light;
 
 /// Width of the names of rows, in points.
 const NAMES: f32 = 62.0;
 const SIDES: [u32; 6] = [128, 256, 384, 512, 768, 1024];
 
-/// What is made, shown, searched and traced.
+/// What is made, shown, lit and traced.
 pub(super) fn choices(ui: &mut Ui, state: &mut State) {
     ScrollArea::vertical().show(ui, |ui| {
         ui.spacing_mut().slider_width = 104.0;
         source(ui, state);
         shown(ui, state);
-        radius(ui, state);
+        light(ui, state);
         photons(ui, state);
     });
 }
@@ -101,11 +102,12 @@ fn source(ui: &mut Ui, state: &mut State) {
 
 fn shown(ui: &mut Ui, state: &mut State) {
     heading(ui, "Show");
+    let maps = state.engine.maps();
     ui.horizontal_wrapped(|ui| {
         for view in View::ALL {
-            let button = Button::selectable(state.view == view, view.name());
+            let button = Button::selectable(state.view == view, maps.name(view));
             let hint = if state.has(view) {
-                view.words()
+                maps.words(view)
             } else if view == View::Error {
                 "Drop an EXR or PNG of the picture's size here first"
             } else {
@@ -124,14 +126,14 @@ fn shown(ui: &mut Ui, state: &mut State) {
     row(ui, "beside it", |ui| {
         let text = match state.beside {
             Beside::Nothing => "nothing",
-            Beside::View(view) => view.name(),
+            Beside::View(view) => maps.name(view),
             Beside::Snapshot => "the snapshot",
         };
         ComboBox::from_id_salt("beside").width(100.0).selected_text(text).show_ui(ui, |ui| {
             ui.selectable_value(&mut state.beside, Beside::Nothing, "nothing");
             let shown: Vec<_> = View::ALL.into_iter().filter(|&view| state.has(view)).collect();
             for view in shown {
-                ui.selectable_value(&mut state.beside, Beside::View(view), view.name());
+                ui.selectable_value(&mut state.beside, Beside::View(view), maps.name(view));
             }
             if state.snapshot.is_some() {
                 ui.selectable_value(&mut state.beside, Beside::Snapshot, "the snapshot");
@@ -155,11 +157,20 @@ fn shown(ui: &mut Ui, state: &mut State) {
     });
 }
 
-fn radius(ui: &mut Ui, state: &mut State) {
-    heading(ui, "Radius");
+fn light(ui: &mut Ui, state: &mut State) {
     let is_map = state.engine.is_map();
+    heading(ui, if is_map { "Radius" } else { "Light" });
     let choices = &mut state.choices;
     if !is_map {
+        row(ui, "light", |ui| {
+            for &light in Light::value_variants() {
+                ui.radio_value(&mut choices.light, light, word(light));
+            }
+        });
+        if choices.light == Light::Tables {
+            ui.weak("as wide as a test of noise allows, pixel by pixel");
+            return;
+        }
         row(ui, "radius", |ui| {
             ui.radio_value(&mut choices.variable, true, "variable");
             ui.radio_value(&mut choices.variable, false, "fixed");

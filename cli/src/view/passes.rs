@@ -2,15 +2,32 @@
 
 use std::time::Duration;
 
-/// Stages, each with how the labels of its passes begin; what is not there is part of the radii, whose passes
+/// What the labels of passes of light from tables begin with.
+const TABLES: [&str; 11] = [
+    "logarithms of areas",
+    "sum of logarithms",
+    "areas of pixels",
+    "neighbours on a face",
+    "longer extents",
+    "extents on curves",
+    "light",
+    "flux",
+    "test of noise",
+    "smooth light",
+    "widths",
+];
+/// Stages, each with how the labels of its passes begin; what is not there is part of [`RADII`], whose passes
 /// are many.
-const STAGES: [(&str, &[&str]); 5] = [
+const STAGES: [(&str, &[&str]); 6] = [
     ("surfaces", &["surfaces"]),
-    ("density", &["density"]),
+    ("density", &["density", "coarser"]),
     ("radii", &[]),
-    ("kernels", &["splat"]),
+    ("kernels", &["splat", "gather"]),
+    ("tables", &TABLES),
     ("shading", &["shade"]),
 ];
+/// The place of the radii.
+const RADII: usize = 2;
 
 /// The time of each stage that has passes, in the order above.
 pub(super) fn grouped<'a>(
@@ -19,7 +36,7 @@ pub(super) fn grouped<'a>(
     let mut times = [None; STAGES.len()];
     for (label, time) in passes {
         let is_of = |(_, starts): &(&str, &[&str])| starts.iter().any(|start| label.starts_with(start));
-        let stage = STAGES.iter().position(is_of).unwrap_or(2);
+        let stage = STAGES.iter().position(is_of).unwrap_or(RADII);
         *times[stage].get_or_insert(Duration::ZERO) += time;
     }
     STAGES.into_iter().zip(times).filter_map(|((stage, _), time)| Some((stage, time?)))
@@ -38,9 +55,20 @@ mod tests {
             ("sat tiles", 2),
             ("radius blocks", 5),
         ];
-        let passes = passes.map(|(label, seconds)| (label, Duration::from_secs(seconds)));
-        let found: Vec<_> =
-            grouped(passes.into_iter()).map(|(stage, time)| (stage, time.as_secs())).collect();
-        assert_eq!(found, [("density", 1), ("radii", 7), ("kernels", 7)]);
+        assert_eq!(seconds(&passes), [("density", 1), ("radii", 7), ("kernels", 7)]);
+        let of_tables = [
+            ("coarser units", 1),
+            ("sum of logarithms", 2),
+            ("light table run sums", 3),
+            ("test of noise, wide", 4),
+            ("light from tables", 5),
+            ("shade", 6),
+        ];
+        assert_eq!(seconds(&of_tables), [("density", 1), ("tables", 14), ("shading", 6)]);
+    }
+
+    fn seconds(passes: &[(&'static str, u64)]) -> Vec<(&'static str, u64)> {
+        let passes = passes.iter().map(|&(label, seconds)| (label, Duration::from_secs(seconds)));
+        grouped(passes).map(|(stage, time)| (stage, time.as_secs())).collect()
     }
 }

@@ -4,6 +4,9 @@ use glow::Texture;
 use varikernel::glam::UVec2;
 use varikernel::glow;
 
+/// The widest light from tables, in pixels.
+pub(super) const WIDEST: u32 = 64;
+
 /// A stage's result as it is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub(super) enum View {
@@ -15,7 +18,7 @@ pub(super) enum View {
     Direct,
     /// Photons of each pixel.
     Density,
-    /// R, in pixels.
+    /// R, or how wide light from tables is gathered, in pixels.
     Radius,
     /// Where MR ended the search with too few photons.
     Limited,
@@ -34,7 +37,7 @@ impl View {
         Self::Error,
     ];
 
-    pub(super) fn name(self) -> &'static str {
+    fn name(self) -> &'static str {
         match self {
             Self::Picture => "picture",
             Self::Indirect => "indirect",
@@ -43,19 +46,6 @@ impl View {
             Self::Radius => "radius",
             Self::Limited => "limited",
             Self::Error => "error",
-        }
-    }
-
-    /// The tool tip of its name.
-    pub(super) fn words(self) -> &'static str {
-        match self {
-            Self::Picture => "Direct and indirect light, tone-mapped",
-            Self::Indirect => "Light that was reflected more than once: what photons bring",
-            Self::Direct => "Lights, and what they light",
-            Self::Density => "Photons of each pixel",
-            Self::Radius => "R: the smallest box that holds n photons",
-            Self::Limited => "Where MR ended the search with too few photons",
-            Self::Error => "Difference from the reference on the screen",
         }
     }
 
@@ -74,17 +64,6 @@ impl View {
     pub(super) fn is_of_maps(self) -> bool {
         matches!(self, Self::Density | Self::Radius | Self::Limited)
     }
-
-    /// What the colours stand for, with the unit; nothing for pictures.
-    pub(super) fn unit(self) -> Option<&'static str> {
-        match self {
-            Self::Picture | Self::Indirect | Self::Direct => None,
-            Self::Density => Some("photons a pixel"),
-            Self::Radius => Some("radius R in pixels"),
-            Self::Limited => Some("red: box of MR holds too few"),
-            Self::Error => Some("levels of 255, of the worst colour"),
-        }
-    }
 }
 
 /// What an engine or a snapshot has to show; textures have row 0 at the top.
@@ -97,12 +76,45 @@ pub(super) struct Maps {
     pub(super) density: Option<Texture>,
     pub(super) radii: Option<Texture>,
     pub(super) limited: Option<Texture>,
+    /// Whether the radii are the widths of light from tables.
+    pub(super) widths: bool,
     /// What the colours of the densities and the radii end at.
     pub(super) most_photons: f32,
     pub(super) max_radius: u32,
 }
 
 impl Maps {
+    /// A view's name.
+    pub(super) fn name(&self, view: View) -> &'static str {
+        if self.widths && view == View::Radius { "width" } else { view.name() }
+    }
+
+    /// The tool tip of a view's name.
+    pub(super) fn words(&self, view: View) -> &'static str {
+        match view {
+            View::Picture => "Direct and indirect light, tone-mapped",
+            View::Indirect => "Light that was reflected more than once: what photons bring",
+            View::Direct => "Lights, and what they light",
+            View::Density => "Photons of each pixel",
+            View::Radius if self.widths => "How wide each pixel's light is gathered; 0 is a pixel alone",
+            View::Radius => "R: the smallest box that holds n photons",
+            View::Limited => "Where MR ended the search with too few photons",
+            View::Error => "Difference from the reference on the screen",
+        }
+    }
+
+    /// What the colours of a view stand for, with the unit; nothing for pictures.
+    pub(super) fn unit(&self, view: View) -> Option<&'static str> {
+        match view {
+            View::Picture | View::Indirect | View::Direct => None,
+            View::Density => Some("photons a pixel"),
+            View::Radius if self.widths => Some("width of light: radius in pixels"),
+            View::Radius => Some("radius R in pixels"),
+            View::Limited => Some("red: box of MR holds too few"),
+            View::Error => Some("levels of 255, of the worst colour"),
+        }
+    }
+
     /// The floats and the whole numbers that a view reads.
     pub(super) fn of(&self, view: View) -> (Option<Texture>, Option<Texture>) {
         match view {
@@ -120,6 +132,7 @@ impl Maps {
         match view {
             View::Picture | View::Indirect | View::Direct | View::Limited => [0.0, 1.0],
             View::Density => [0.0, self.most_photons],
+            View::Radius if self.widths => [0.0, self.max_radius as f32],
             View::Radius => [1.0, self.max_radius.max(2) as f32],
             View::Error => [0.0, 63.0],
         }

@@ -8,7 +8,7 @@ mod display;
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Stdio;
+use std::process::{Command, Stdio};
 
 use display::{Display, program};
 use glam::UVec2;
@@ -32,7 +32,10 @@ const DONE: &str = "step 4, done";
 /// Columns of the picture, between the panels, and of the panel with settings.
 const MIDDLE: [u32; 2] = [300, 730];
 /// The left end of the slider of n.
-const SLIDER: (i16, i16) = (82, 303);
+const SLIDER: (i16, i16) = (82, 324);
+/// Light from tables, and splats.
+const TABLES: (i16, i16) = (85, 283);
+const SPLAT: (i16, i16) = (147, 283);
 
 /// Root of the mean squared difference within some columns, in levels.
 fn rmse(a: &Image<[u8; 3]>, b: &Image<[u8; 3]>, columns: [u32; 2]) -> f64 {
@@ -76,7 +79,8 @@ fn coarse(image: &Image<[u8; 3]>) -> Image<[u8; 3]> {
 #[test]
 fn a_slider_changes_the_picture_and_nothing_else() {
     let display = Display::new();
-    let program = display.open(&SMALL, DONE);
+    let arguments: Vec<_> = SMALL.into_iter().chain(["--light", "splat"]).collect();
+    let program = display.open(&arguments, DONE);
     // Out of the picture, so that no pixel is read out.
     program.point((150, 630));
     let before = program.look_at_rest();
@@ -87,7 +91,7 @@ fn a_slider_changes_the_picture_and_nothing_else() {
         program.point((150, 630));
     });
     let photons = |image: &Image<[u8; 3]>| {
-        Image::from_fn(UVec2::new(290, 160), |x, y| image.at(x, y + 460)) // of the panel, below the radii
+        Image::from_fn(UVec2::new(290, 155), |x, y| image.at(x, y + 480)) // of the panel, below the light
     };
     // The panel fades where the mouse was, and then is as before.
     program.look_until("another picture beside the same panel", |seen| {
@@ -96,6 +100,33 @@ fn a_slider_changes_the_picture_and_nothing_else() {
     });
     program.press('q');
     assert_eq!(program.end().code(), Some(0));
+}
+
+#[test]
+fn light_is_from_tables_until_another_is_chosen() {
+    let display = Display::new();
+    // Direct light gets better all the time.
+    let arguments: Vec<_> = SMALL.into_iter().chain(["--view", "indirect"]).collect();
+    let program = display.open(&arguments, DONE);
+    program.point((150, 630));
+    let before = program.look_at_rest();
+    // The panel below the choice: rows of radii and kernels come and go.
+    let rows = |image: &Image<[u8; 3]>| Image::from_fn(UVec2::new(290, 150), |x, y| image.at(x, y + 300));
+    let click = |at| {
+        program.while_busy(|| {
+            program.drag(at, at);
+            program.point((150, 630));
+        });
+    };
+    click(SPLAT);
+    program.look_until("splats", |seen| {
+        rmse(seen, &before, MIDDLE) > 1.0 && rmse(&rows(&before), &rows(seen), [0, 290]) > 5.0
+    });
+    click(TABLES);
+    // The same photons, in the same light.
+    program.look_until("light from tables", |seen| {
+        rmse(seen, &before, MIDDLE) == 0.0 && rmse(&rows(&before), &rows(seen), [0, 290]) < 1.0
+    });
 }
 
 #[test]
@@ -188,17 +219,31 @@ fn a_screenshot_is_the_golden_one_but_for_times() {
     assert!(rmse(&found, &swapped, columns) > 4.0);
 }
 
+fn refused(run: &mut Command, words: &[&str]) {
+    let output = run.stdout(Stdio::piped()).output().unwrap();
+    let stderr = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{stderr}");
+    assert!(!stderr.contains("panicked") && output.stdout.is_empty(), "{stderr}");
+    for word in words {
+        assert!(stderr.contains(word), "{word:?} is not in: {stderr}");
+    }
+}
+
+#[test]
+fn options_about_kernels_are_refused_where_light_has_none() {
+    let kernels = [["-n", "50"], ["-r", "9"], ["--radius", "variable"], ["--kernel", "cone"]];
+    for option in kernels {
+        let words = [option[0], "light from tables has none", "add `--light splat`"];
+        refused(program().args(option), &words);
+        refused(program().args(option).args(["--light", "tables"]), &words);
+        refused(program().args(option).args(["--light", "splat"]), &["a window needs a display"]);
+    }
+    let map = concat!(env!("CARGO_MANIFEST_DIR"), "/../assets/maps/cornell_glass_512.exr");
+    refused(program().args([map, "-n", "50", "-r", "9"]), &["a window needs a display"]);
+}
+
 #[test]
 fn without_a_display_or_opengl_the_headless_verbs_are_named() {
-    let refused = |run: &mut std::process::Command, words: &[&str]| {
-        let output = run.stdout(Stdio::piped()).output().unwrap();
-        let stderr = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(2), "{stderr}");
-        assert!(!stderr.contains("panicked") && output.stdout.is_empty(), "{stderr}");
-        for word in words {
-            assert!(stderr.contains(word), "{word:?} is not in: {stderr}");
-        }
-    };
     let words = ["error: a window needs a display", "`varikernel render`", "`varikernel radius`"];
     refused(&mut program(), &words);
     refused(program().env("DISPLAY", ":64999"), &words);

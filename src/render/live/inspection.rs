@@ -7,7 +7,7 @@ use crate::image::Image;
 use crate::light::IrradiancePipeline;
 use crate::reference::{Inside, Table};
 use crate::scene::Scene;
-use crate::settings::KernelRadius;
+use crate::settings::{Estimate, KernelRadius};
 use crate::view::View;
 
 /// What a pixel holds, and why its radius is what it is.
@@ -15,11 +15,12 @@ use crate::view::View;
 pub struct Inspection {
     /// Photons of the pixel itself.
     pub photons: u64,
-    /// R: the radius of its photons' kernels, in pixels.
+    /// R: the radius of its photons' kernels, or of the box that light from tables is gathered from, in pixels;
+    /// only there it may be 0.
     pub radius: u32,
     /// N(R): photons in the box of radius R, as far as it is inside of the picture.
     pub within: u64,
-    /// N(R - 1): photons in the next smaller box; nothing for R = 1.
+    /// N(R - 1): photons in the next smaller box; nothing for R up to 1.
     pub within_smaller: Option<u64>,
     /// Name of the surface that the pixel shows first, mirrors and glass too.
     pub surface: Option<String>,
@@ -63,6 +64,7 @@ impl Inspector {
         let (table, radii) = self.maps.insert(maps);
         let radius = match (pipeline.settings().radius, radii) {
             (_, Some(radii)) => radii.at(pixel.x, pixel.y),
+            _ if pipeline.settings().estimate == Estimate::Tables => 0,
             (KernelRadius::Fixed(radius), None) => radius,
             (KernelRadius::Variable, None) => pipeline.settings().radii.search.max_radius,
         };

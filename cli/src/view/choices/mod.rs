@@ -10,11 +10,11 @@ use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
 use varikernel::image::write_atomically;
 use varikernel::settings::{
-    Edges, Estimate, Exactness, IrradianceSettings, Kernel, KernelRadius, Laboratory, Method, Order, Search,
-    Settings,
+    Edges, Exactness, IrradianceSettings, Kernel, KernelRadius, Laboratory, Method, Order, Search, Settings,
 };
 use varikernel::view::Camera;
 
+use crate::light::Light;
 use crate::output::quoted;
 
 /// The least and the most photons of a frame.
@@ -29,6 +29,9 @@ pub(super) struct Choices {
     pub(super) source: String,
     /// Columns and rows of a scene's picture.
     pub(super) size: [u32; 2],
+    /// How a scene's photons become light; from tables, it has neither radii nor kernels to choose.
+    #[serde(default = "before_tables")]
+    pub(super) light: Light,
     /// Whether radii come from a search; else `fixed_radius` is that of all kernels.
     pub(super) variable: bool,
     pub(super) fixed_radius: u32,
@@ -52,6 +55,11 @@ pub(super) struct Choices {
     pub(super) exposure: Option<f32>,
     /// Where the camera was moved to, if it was.
     pub(super) camera: Option<CameraChoice>,
+}
+
+/// The light of settings that were saved before there was a choice.
+fn before_tables() -> Light {
+    Light::Splat
 }
 
 /// A camera as its file holds it.
@@ -105,11 +113,15 @@ impl Choices {
         Settings { search, limited_mask: true, laboratory, ..usual }
     }
 
-    /// How photons become irradiance.
+    /// How a scene's photons become irradiance; with tables, in mirrors and through glass as `render` does.
     pub(super) fn irradiance(&self) -> IrradianceSettings {
+        let estimate = self.light.estimate(false);
+        if self.light == Light::Tables {
+            return IrradianceSettings { estimate, ..IrradianceSettings::default() };
+        }
         let radius =
             if self.variable { KernelRadius::Variable } else { KernelRadius::Fixed(self.fixed_radius) };
-        IrradianceSettings { radius, radii: self.search(), kernel: self.kernel, estimate: Estimate::Splat }
+        IrradianceSettings { radius, radii: self.search(), kernel: self.kernel, estimate }
     }
 
     /// The method, with an order that it has.
@@ -131,18 +143,19 @@ impl Choices {
             );
         }
         let [width, height] = self.size;
-        let radius = if self.variable {
-            format!("-n {n} -r {max}")
-        } else {
-            format!("--radius fixed:{}", self.fixed_radius)
+        let kernel = word(self.kernel);
+        let kernels = match (self.light, self.variable) {
+            (Light::Tables, _) => String::new(),
+            (_, true) => format!(" -n {n} -r {max} --kernel {kernel}"),
+            (_, false) => format!(" --radius fixed:{} --kernel {kernel}", self.fixed_radius),
         };
         let bounces = self.bounces.map_or_else(String::new, |bounces| format!(" --bounces {bounces}"));
         let exposure = self.exposure.map_or_else(String::new, |stops| format!(" --exposure {stops:.2}"));
         format!(
-            "varikernel render {source} -o picture.exr --size {width}x{height} --photons {} {radius} \
-             --kernel {}{bounces} --seed {}{exposure}",
+            "varikernel render {source} -o picture.exr --size {width}x{height} --photons {} --light \
+             {}{kernels}{bounces} --seed {}{exposure}",
             photons.max(1),
-            word(self.kernel),
+            word(self.light),
             self.seed
         )
     }
@@ -177,12 +190,15 @@ pub(super) fn word(value: impl ValueEnum + Copy) -> String {
 
 #[cfg(test)]
 mod tests {
+    use varikernel::settings::Estimate;
+
     use super::*;
 
     pub(super) fn choices() -> Choices {
         Choices {
             source: "cornell-glass".to_owned(),
             size: [64, 48],
+            light: Light::Splat,
             variable: true,
             fixed_radius: 3,
             min_photons: 50,
@@ -232,13 +248,44 @@ mod tests {
     }
 
     #[test]
+    fn settings_of_before_tables_have_the_light_that_they_had() {
+        let folder = tempfile::TempDir::new().expect("a folder");
+        let path = folder.path().join("view.json");
+        Choices { light: Light::Tables, ..choices() }.save(&path, String::new()).expect("saved");
+        let text = fs::read_to_string(&path).expect("read");
+        let old = text.replace("    \"light\": \"tables\",\n", "");
+        assert!(old.len() < text.len(), "{text}");
+        fs::write(&path, old).expect("written");
+        assert_eq!(Choices::load(&path).expect("loaded"), choices());
+    }
+
+    #[test]
+    fn light_from_tables_asks_for_no_kernels() {
+        let mut choices = Choices { light: Light::Tables, ..choices() };
+        let before = choices.irradiance();
+        assert_eq!(before.estimate, Estimate::Tables);
+        (choices.min_photons, choices.variable, choices.kernel) = (7, false, Kernel::Silverman);
+        assert_eq!(choices.irradiance(), before, "the picture is not started anew");
+        choices.light = Light::Gather;
+        let gather = choices.irradiance();
+        assert_eq!(gather.estimate, Estimate::Gather { count_correction: false });
+        assert_eq!(gather.radius, KernelRadius::Fixed(3));
+    }
+
+    #[test]
     fn commands_name_what_differs() {
         let mut choices = choices();
         assert_eq!(
             choices.command(5000, false),
-            "varikernel render cornell-glass -o picture.exr --size 64x48 --photons 5000 -n 50 -r 16 --kernel \
-             cone --bounces 8 --seed 1"
+            "varikernel render cornell-glass -o picture.exr --size 64x48 --photons 5000 --light splat -n 50 \
+             -r 16 --kernel cone --bounces 8 --seed 1"
         );
+        (choices.light, choices.variable) = (Light::Gather, false);
+        let command = choices.command(5000, false);
+        assert!(command.contains("--light gather --radius fixed:3 --kernel cone --bounces 8"), "{command}");
+        choices.light = Light::Tables;
+        let command = choices.command(5000, false);
+        assert!(command.ends_with("--photons 5000 --light tables --bounces 8 --seed 1"), "{command}");
         choices.bounces = None;
         assert!(!choices.command(5000, false).contains("bounces"), "photons are followed to their end");
         choices.source = "it's a map.exr".to_owned();

@@ -107,6 +107,7 @@ impl MapEngine {
             density: Some(self.shown.texture()),
             radii: Some(radii.texture()),
             limited: radii.limited_texture(),
+            widths: false,
             most_photons: round_up(self.most_photons as f32),
             max_radius: self.settings().search.max_radius,
         }

@@ -8,13 +8,14 @@ use anyhow::{Result, bail};
 use varikernel::glam::{UVec2, Vec3};
 use varikernel::image::{Attribute, Format, LayerFile, ToneMap, write_colours};
 use varikernel::render::{Inspection, Live, LiveSettings};
+use varikernel::settings::Estimate;
 use varikernel::view::Camera;
 use varikernel::{Gl, Image};
 
 use super::Readout;
 use crate::photons::load;
 use crate::view::choices::Choices;
-use crate::view::views::{Maps, round_up};
+use crate::view::views::{Maps, WIDEST, round_up};
 use crate::words::in_words_of_options;
 
 pub(in crate::view) struct SceneEngine {
@@ -60,6 +61,7 @@ impl SceneEngine {
         // A photon lands several times; a lit pixel has about as many landings as there are photons for each
         // pixel, a caustic some dozens of times that.
         let mean = live.photons() as f32 / (size.x * size.y) as f32;
+        let widths = irradiance.estimate == Estimate::Tables;
         // What a first step has not yet filled is undefined.
         let drawn = live.steps() > 0;
         Maps {
@@ -70,8 +72,9 @@ impl SceneEngine {
             density: drawn.then(|| live.density()),
             radii: live.radii().filter(|_| drawn),
             limited: live.limited().filter(|_| drawn),
+            widths,
             most_photons: round_up(40.0 * mean),
-            max_radius: irradiance.radii.search.max_radius,
+            max_radius: if widths { WIDEST } else { irradiance.radii.search.max_radius },
         }
     }
 

@@ -16,6 +16,7 @@ use super::engine::{Engine, Readout};
 use super::screen::{Screen, Snapshot};
 use super::times::Times;
 use super::views::View;
+use crate::light::Light;
 
 /// Frames whose median says how long a frame takes.
 const RECENT: usize = 5;
@@ -206,16 +207,30 @@ impl State {
         match view {
             View::Error => self.screen.reference_size() == Some(self.engine.maps().size),
             View::Density => true,
-            View::Radius | View::Limited => self.choices.variable || self.engine.is_map(),
+            View::Radius => self.has_radii() || self.has_widths(),
+            View::Limited => self.has_radii(),
             _ => !self.engine.is_map(),
         }
     }
 
+    /// Whether radii are searched.
+    pub(super) fn has_radii(&self) -> bool {
+        self.engine.is_map() || self.choices.irradiance().searches_radii()
+    }
+
+    /// Whether light is from tables, each pixel with a width of its own.
+    pub(super) fn has_widths(&self) -> bool {
+        !self.engine.is_map() && self.choices.light == Light::Tables
+    }
+
     /// Keeps the maps as they are, to be compared with those of other choices.
     pub(super) fn take_snapshot(&mut self) {
-        let words = match (self.engine.is_map(), self.choices.variable) {
-            (false, false) => format!("radius {}", self.choices.fixed_radius),
-            _ => format!("n = {}, MR = {}", self.choices.min_photons, self.choices.max_radius),
+        let words = if self.has_radii() {
+            format!("n = {}, MR = {}", self.choices.min_photons, self.choices.max_radius)
+        } else if self.has_widths() {
+            "light from tables".to_owned()
+        } else {
+            format!("radius {}", self.choices.fixed_radius)
         };
         match Snapshot::of(&self.gl, &self.engine.maps(), words) {
             Ok(snapshot) => {
