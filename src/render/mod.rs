@@ -8,11 +8,14 @@ mod account;
 mod bounce_map;
 mod cube_map;
 mod direct;
+mod landed;
 mod layers;
 mod live;
 mod nearest;
+mod photon_sums;
 mod prepared;
 mod reference;
+mod rings;
 mod seen_through;
 mod shade;
 mod shadow_map;
@@ -20,6 +23,7 @@ mod sight;
 mod stages;
 mod surfaces;
 mod traced;
+mod widened;
 
 pub use account::Account;
 pub use layers::Layers;
@@ -39,9 +43,9 @@ use crate::maps::{PhotonPoints, SurfaceMaps};
 use crate::photon::{Emission, PhotonPoint, TraceSettings};
 use crate::scene::Scene;
 use crate::settings::{KernelRadius, PictureSettings};
-use nearest::PhotonGrid;
+use landed::{Landed, Wanted};
 use prepared::Prepared;
-use seen_through::{Wanted, seen_through};
+use seen_through::seen_through;
 use shade::{ShadeStage, TracedLight};
 use sight::Place;
 use traced::Traced;
@@ -86,9 +90,9 @@ impl Renderer {
         // What can be refused is refused before anything is traced.
         let emission = Emission::new(scene, trace)?;
         let prepared = Prepared::new(gl, scene, settings, progress)?;
-        let needs_grid = !prepared.bent.is_empty();
+        let wanted = (!prepared.bent.is_empty()).then(|| Wanted::of(&settings.irradiance()));
         let view = prepared.surfaces.view();
-        let traced = Traced::new(gl, scene, view, &emission, needs_grid, settings.first_bounce, progress)?;
+        let traced = Traced::new(gl, scene, view, &emission, wanted, settings.first_bounce, progress)?;
         Self::assemble(gl, prepared, traced, settings)
     }
 
@@ -111,9 +115,10 @@ impl Renderer {
         let view = prepared.surfaces.view();
         let seen: Vec<_> = photons.iter().copied().filter(|photon| photon.may_be_seen(view)).collect();
         points.upload(&seen)?;
-        let grid = (!prepared.bent.is_empty()).then(|| PhotonGrid::new(photons));
+        let wanted = Wanted::of(&settings.irradiance());
+        let landed = (!prepared.bent.is_empty()).then(|| Landed::new(photons, wanted));
         let count = u32::try_from(photons.len()).expect("fewer than 2^32 photons");
-        let traced = Traced { emitted: count, landings: count.into(), cut_off_share: 0.0, points, grid };
+        let traced = Traced { emitted: count, landings: count.into(), cut_off_share: 0.0, points, landed };
         Self::assemble(gl, prepared, traced, settings)
     }
 
@@ -152,7 +157,7 @@ impl Renderer {
         self.light.seen_through = seen_through(
             self.surfaces.view(),
             &self.bent,
-            self.traced.grid.as_ref(),
+            self.traced.landed.as_mut(),
             Wanted::of(&asked),
             settings.kernel,
         );

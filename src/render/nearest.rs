@@ -10,7 +10,7 @@ use crate::settings::Kernel;
 /// Cells along the longest side.
 const CELLS: f32 = 128.0;
 /// The least cosine between the normals of a photon and a place that it lights.
-const LEAST_AGREEMENT: f64 = 0.5;
+pub(super) const LEAST_AGREEMENT: f64 = 0.5;
 
 /// How wide the disc around a place is.
 #[derive(Clone, Copy, Debug)]
@@ -26,7 +26,7 @@ const ASKED: usize = 4096;
 
 /// The corners of a box that leaves out at most a hundredth of the photons on each of its sides: a few that
 /// land far away would make all cells coarse.
-fn around_most(photons: &[PhotonPoint]) -> (Vec3, Vec3) {
+pub(super) fn around_most(photons: &[PhotonPoint]) -> (Vec3, Vec3) {
     let step = photons.len().div_ceil(ASKED).max(1);
     let ends = |axis: usize| {
         let mut at: Vec<f32> = photons.iter().step_by(step).map(|photon| photon.position[axis]).collect();
@@ -74,6 +74,11 @@ impl PhotonGrid {
         }
         (grid.begins, grid.photons) = (begins, sorted);
         grid
+    }
+
+    /// In the order of their cells.
+    pub(super) fn photons(&self) -> &[PhotonPoint] {
+        &self.photons
     }
 
     fn cell_of(&self, position: Vec3) -> IVec3 {

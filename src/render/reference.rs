@@ -4,8 +4,9 @@
 use glam::DVec3;
 
 use super::account::pixel_area;
+use super::landed::Wanted;
 use super::prepared::Prepared;
-use super::seen_through::{Wanted, seen_through};
+use super::seen_through::seen_through;
 use super::sight::Place;
 use super::traced::Traced;
 use super::{Layers, Progress, add, rgb};
@@ -73,12 +74,14 @@ impl Reference {
     ) -> Result<()> {
         let view = *self.surfaces.view();
         let emission = Emission::new(scene, trace)?;
-        let traced = Traced::new(
+        // A pixel's own photons.
+        let wanted = Wanted::Fixed(0);
+        let mut traced = Traced::new(
             &self.gl,
             scene,
             &view,
             &emission,
-            !self.bent.is_empty(),
+            (!self.bent.is_empty()).then_some(wanted),
             FirstBounce::Rays,
             progress,
         )?;
@@ -87,7 +90,7 @@ impl Reference {
         // The counts are checked before they are believed.
         let power = self.density.power().unwrap_or_else(|| unreachable!("made without units"));
         add_up(&mut self.power, &power.read()?);
-        let through = seen_through(&view, &self.bent, traced.grid.as_ref(), Wanted::Fixed(0), Kernel::Box);
+        let through = seen_through(&view, &self.bent, traced.landed.as_mut(), wanted, Kernel::Box);
         add_up(&mut self.seen_through, &through);
         self.seeds += 1;
         self.cut_off_shares += traced.cut_off_share;

@@ -2,7 +2,7 @@
 //! need them.
 
 use super::Progress;
-use super::nearest::PhotonGrid;
+use super::landed::{Landed, Wanted};
 use crate::error::Result;
 use crate::gl::Gl;
 use crate::maps::PhotonPoints;
@@ -25,17 +25,18 @@ pub(super) struct Traced {
     /// Those that may be seen, on the GPU.
     pub(super) points: PhotonPoints,
     /// All of them, if mirrors or glass show places outside of the picture.
-    pub(super) grid: Option<PhotonGrid>,
+    pub(super) landed: Option<Landed>,
 }
 
 impl Traced {
-    /// Traces photons; those of direct light are left out.
+    /// Traces photons; those of direct light are left out. All are kept only for what is seen `through`
+    /// mirrors and glass.
     pub(super) fn new(
         gl: &Gl,
         scene: &Scene,
         view: &View,
         emission: &Emission<'_>,
-        needs_grid: bool,
+        through: Option<Wanted>,
         first_bounce: FirstBounce,
         progress: &mut dyn FnMut(Progress),
     ) -> Result<Self> {
@@ -45,7 +46,7 @@ impl Traced {
         let mut keep = |photons: &[Photon], points: &mut PhotonPoints| {
             for photon in photons.iter().filter(|photon| !photon.is_direct()) {
                 let point = PhotonPoint::new(photon);
-                if needs_grid {
+                if through.is_some() {
                     all.push(point);
                 }
                 if point.may_be_seen(view) {
@@ -82,10 +83,10 @@ impl Traced {
             }
         };
         points.upload(&seen)?;
-        let grid = needs_grid.then(|| PhotonGrid::new(&all));
+        let landed = through.map(|wanted| Landed::new(&all, wanted));
         let cut_off_share =
             tally.power_cut_off().element_sum() / tally.power_emitted().element_sum().max(f64::MIN_POSITIVE);
-        Ok(Self { emitted: trace.photons, landings: tally.total(), cut_off_share, points, grid })
+        Ok(Self { emitted: trace.photons, landings: tally.total(), cut_off_share, points, landed })
     }
 }
 

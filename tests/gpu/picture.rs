@@ -42,7 +42,8 @@ fn every_picture_of_the_shipped_scenes_is_finite() {
         for photons in [1, 3_000] {
             let trace = TraceSettings { photons, ..TraceSettings::default() };
             let mut renderer = Renderer::new(&gl, &scene, &settings, &trace, &mut |_| ()).unwrap();
-            for estimate in [Estimate::Splat, Estimate::Gather { count_correction: true }] {
+            let gather = Estimate::Gather { count_correction: true };
+            for estimate in [Estimate::Splat, gather, Estimate::Tables] {
                 let (layers, account) = renderer.picture(&PictureSettings { estimate, ..settings }).unwrap();
                 assert_finite(&layers, name);
                 // Direct light does not pass through water.

@@ -3,8 +3,8 @@
 
 use crate::image::Image;
 use crate::photon::PhotonPoint;
-use crate::render::nearest::PhotonGrid;
-use crate::render::seen_through::{Wanted, seen_through};
+use crate::render::landed::{Landed, Wanted};
+use crate::render::seen_through::seen_through;
 use crate::render::sight::Place;
 use crate::settings::IrradianceSettings;
 use crate::view::View;
@@ -46,8 +46,9 @@ impl ProgressiveThrough {
             return;
         }
         self.gathered = self.photons.len();
-        let grid = PhotonGrid::new(&self.photons);
-        let light = seen_through(&self.view, &self.bent, Some(&grid), Wanted::of(settings), settings.kernel);
+        let wanted = Wanted::of(settings);
+        let mut landed = Landed::new(&self.photons, wanted);
+        let light = seen_through(&self.view, &self.bent, Some(&mut landed), wanted, settings.kernel);
         self.image = light.map(|[red, green, blue, alpha]| [scale * red, scale * green, scale * blue, alpha]);
     }
 
