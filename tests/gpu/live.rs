@@ -185,9 +185,8 @@ fn a_pixel_says_how_wide_its_light_from_tables_is() {
     assert_eq!(live.inspect(UVec2::splat(9)).unwrap().radius, 0, "no light yet");
     live.step().unwrap();
     assert!(live.radii().is_some() && live.limited().is_none());
-    let seen: Vec<_> = (0..SIDE * SIDE)
-        .map(|place| live.inspect(UVec2::new(place % SIDE, place / SIDE)).unwrap())
-        .collect();
+    let seen: Vec<_> =
+        (0..SIDE * SIDE).map(|place| live.inspect(UVec2::new(place % SIDE, place / SIDE)).unwrap()).collect();
     assert!(seen.iter().all(|pixel| pixel.radius <= 64 && pixel.within >= pixel.photons));
     let wide = seen.iter().filter(|pixel| pixel.radius > 0).count();
     assert!(wide > seen.len() / 2 && wide < seen.len(), "{wide} of {}", seen.len());
