@@ -65,8 +65,10 @@ mod tests {
             |red, green, blue| PhotonPoint { power: Vec3::new(red, green, blue), ..PhotonPoint::zeroed() };
         let two = PhotonTotals::of(&[photon(1.0, 2.0, 3.0), photon(0.0, 0.0, 3.0)]);
         assert_eq!(two, PhotonTotals { count: 2, power: [1.0, 2.0, 6.0], squares: 45.0 });
-        assert_eq!((two + two).squares, 90.0);
-        assert_eq!((two.mean_square(), PhotonTotals::default().mean_square()), (22.5, 0.0));
+        let four = PhotonTotals { count: 4, power: [2.0, 4.0, 12.0], squares: 90.0 };
+        assert_eq!(two + two, four);
+        let means = [two, PhotonTotals::default()].map(|totals| totals.mean_square());
+        assert!(means.iter().zip([22.5, 0.0]).all(|(mean, expected)| (mean - expected).abs() < 1e-12));
         assert!(two.is_finite() && !PhotonTotals::of(&[photon(f32::NAN, 0.0, 0.0)]).is_finite());
     }
 }

@@ -65,18 +65,19 @@ fn on_pixels(surfaces: &SurfaceMaps, units: FluxUnits, count: u32) -> (Vec<Photo
     let mut photons = Vec::new();
     for index in 0.. {
         let (x, y) = (index * 7 % SIZE.x, index * 5 % SIZE.y);
-        let ([a, b, c, _], [d, e, f, surface]) = (position.at(x, y), normal.at(x, y));
+        let (place, facing) = (position.at(x, y), normal.at(x, y));
+        let surface = facing[3];
         if surface <= 0.0 {
             continue;
         }
         #[expect(clippy::cast_precision_loss, reason = "small numbers")]
         let power = Vec3::new(0.3, 0.2, 0.1) * (1.0 + (index % 1013) as f32 / 77.0);
-        let photon = PhotonPoint { position: Vec3::new(a, b, c), normal: Vec3::new(d, e, f), power, surface };
+        let photon = PhotonPoint { position: Vec3::from_slice(&place[..3]), normal: Vec3::from_slice(&facing[..3]), power, surface };
         let before: [u64; 4] = expected.at(x, y);
         let added = in_units(&photon, units);
         expected.set(x, y, std::array::from_fn(|channel| before[channel] + added[channel]));
         photons.push(photon);
-        if photons.len() as u32 == count {
+        if photons.len() == count as usize {
             return (photons, expected);
         }
     }

@@ -31,6 +31,7 @@ const SHARED: [(&str, &[(&str, &str)]); 3] = [
             ("settings", "what is asked for, of the library and of the room above it"),
             ("summed_area_table", "the table of sums, with OpenGL and by its definition"),
             ("surfaces", "what pixels show: the maps, and the stage that draws them"),
+            ("tables", "what sums of boxes are read from: of photons, of light, and by the definition"),
             ("texture", "an image on a surface or in OpenGL: ours, and as a format has it"),
         ],
     ),

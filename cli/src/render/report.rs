@@ -48,7 +48,7 @@ pub(super) fn print(report: &Report<'_>) -> Result<()> {
             let fragments = fragments / contributing_or_one(contributing);
             facts.push(("light", format!("splats, {radius}, {fragments:.1} fragments a photon")));
         }
-        _ => facts.push(("light", format!("gathered, {radius}"))),
+        Estimate::Gather { .. } => facts.push(("light", format!("gathered, {radius}"))),
     }
     if report.settings.irradiance().searches_radii() {
         facts

@@ -2,7 +2,7 @@
 //! searched and no photon is drawn as a kernel.
 //!
 //! - A pixel's irradiance is the flux of a box around it over the area that the box sees, four fetches each.
-//!   The box ends where the face ends ([`geometry`]).
+//!   The box ends where the face ends ([`faces`]).
 //! - Boxes have radii of 0, 1, 2, 4, ... 64 pixels. Each is compared with the one before: where the light
 //!   differs by no more than noise would make it, the wider one is better. Tests are pooled over a box twice
 //!   as wide, since that of one pixel is noise itself; between widths light is mixed.
@@ -14,7 +14,7 @@
 //! After F. Rousselle, C. Knaus, M. Zwicker, "Adaptive sampling and reconstruction using greedy error
 //! minimization" (2011), on the tables of F. Crow (1984).
 
-mod geometry;
+mod faces;
 mod summed_table;
 
 use glam::UVec2;
@@ -25,7 +25,7 @@ use crate::gl::{
     bytes_of, glsl,
 };
 use crate::maps::{FluxMap, IrradianceMap, RadiusMap, SurfaceMaps};
-use geometry::GeometryMaps;
+use faces::FaceMaps;
 use summed_table::{Channels, ScanPrograms, SummedTable};
 
 const POINTS: &str = "flux of pixels";
@@ -52,7 +52,7 @@ pub struct TablesStage {
     gather: Program,
     smooth: Program,
     widths: Program,
-    geometry: GeometryMaps,
+    faces: FaceMaps,
     points: Target,
     flux_table: SummedTable,
     /// Of narrow boxes at each pixel, and of wide ones at every second.
@@ -84,7 +84,7 @@ impl TablesStage {
             gather: Program::new(gl, &gather)?,
             smooth: Program::new(gl, &smooth)?,
             widths: Program::new(gl, &widths)?,
-            geometry: GeometryMaps::new(gl, size, targets)?,
+            faces: FaceMaps::new(gl, size, targets)?,
             points: targets.take(),
             flux_table: SummedTable::take(size, targets),
             ratios: [targets.take(), targets.take()],
@@ -100,7 +100,7 @@ impl TablesStage {
     pub(super) fn shapes(size: UVec2) -> Vec<TargetShape> {
         let four = |label, size| vec![TextureShape::new(label, TextureFormat::Rgba32Uint, size)];
         let table = |size| SummedTable::shapes(Channels::Four, size);
-        let mut shapes = GeometryMaps::shapes(size);
+        let mut shapes = FaceMaps::shapes(size);
         shapes.push(four(POINTS, size));
         shapes.extend(table(size));
         shapes.extend([four(TEST_FINE, size), four(TEST_COARSE, halved(size))]);
@@ -122,7 +122,7 @@ impl TablesStage {
 
     /// Goes on with other targets.
     pub(super) fn resize(&mut self, size: UVec2, targets: &mut Targets) {
-        self.geometry.resize(size, targets);
+        self.faces.resize(size, targets);
         self.points = targets.take();
         self.flux_table = SummedTable::take(size, targets);
         self.ratios = [targets.take(), targets.take()];
@@ -136,7 +136,7 @@ impl TablesStage {
     /// The camera or what it sees has changed: areas and extents are made anew by the next
     /// [`gather`](Self::gather).
     pub fn forget_camera(&mut self) {
-        self.geometry.forget();
+        self.faces.forget();
     }
 
     /// Gathers at every pixel from the flux of each pixel's photons. Areas and extents are those of before,
@@ -150,12 +150,12 @@ impl TablesStage {
         let [low, high] = flux.as_textures();
         surfaces.check_size(low.size())?;
         let _state = StateGuard::new(&self.gl);
-        self.geometry.update(surfaces, &self.one)?;
+        self.faces.update(surfaces, &self.one)?;
 
         Pass::new(POINTS, &self.points_program)
             .read("low", low)
             .read("high", high)
-            .read("weights", self.geometry.weights())
+            .read("weights", self.faces.weights())
             .fill(&mut self.points)?;
         self.flux_table.build(&self.four, self.points.texture())?;
 
@@ -169,13 +169,13 @@ impl TablesStage {
             [(TEST_FINE, &self.tests[0], &mut *fine), (TEST_COARSE, &self.tests[1], &mut *coarse)]
         {
             let pass = Pass::new(label, program)
-                .read("extents", self.geometry.extents())
+                .read("extents", self.faces.extents())
                 .read("flux_table", self.flux_table.texture())
-                .read("area_table", self.geometry.table())
+                .read("area_table", self.faces.table())
                 .set("square_unit", square_unit)
                 .set("usual_square", usual_square);
             if label == TEST_FINE {
-                pass.read("points", self.points.texture()).read("areas", self.geometry.areas())
+                pass.read("points", self.points.texture()).read("areas", self.faces.areas())
             } else {
                 pass
             }
@@ -187,9 +187,9 @@ impl TablesStage {
         let steps = self.steps_of_light(flux);
         Pass::new(GATHER, &self.gather)
             .read("normal", surfaces.normal())
-            .read("extents", self.geometry.extents())
+            .read("extents", self.faces.extents())
             .read("flux_table", self.flux_table.texture())
-            .read("area_table", self.geometry.table())
+            .read("area_table", self.faces.table())
             .read("fine_tests", self.ratio_tables[0].texture())
             .read("coarse_tests", self.ratio_tables[1].texture())
             .set("steps_of_light", steps)
@@ -197,9 +197,9 @@ impl TablesStage {
         self.light_table.build(&self.four, &self.gathered.textures()[1])?;
         Pass::new(SMOOTH, &self.smooth)
             .read("gathered", self.gathered.texture())
-            .read("extents", self.geometry.extents())
+            .read("extents", self.faces.extents())
             .read("light_table", self.light_table.texture())
-            .read("log_areas", self.geometry.log_areas())
+            .read("log_areas", self.faces.log_areas())
             .set("steps_of_light", steps)
             .set("flux_unit", units.power)
             .fill(self.irradiance.target())?;
@@ -215,7 +215,7 @@ impl TablesStage {
     fn steps_of_light(&self, flux: &FluxMap) -> f32 {
         let brightest = flux.totals().power.into_iter().fold(0.0, f64::max);
         let pixels = self.irradiance.size().as_dvec2().element_product();
-        let mean = brightest / f64::from(flux.units().power) / (pixels * geometry::MEAN_AREA);
+        let mean = brightest / f64::from(flux.units().power) / (pixels * faces::MEAN_AREA);
         (f64::from(MOST_STEPS) / (BRIGHTEST * mean.max(1e-20))) as f32
     }
 
@@ -263,5 +263,5 @@ fn sources() -> [ShaderSource; 6] {
 
 /// All shaders of light from tables.
 pub(super) fn all_sources() -> Vec<ShaderSource> {
-    summed_table::all_sources().into_iter().chain(geometry::sources()).chain(sources()).collect()
+    summed_table::all_sources().into_iter().chain(faces::sources()).chain(sources()).collect()
 }

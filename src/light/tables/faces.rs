@@ -25,7 +25,7 @@ const DOUBLINGS: u32 = 7;
 
 /// Areas and extents of one camera.
 #[derive(Debug)]
-pub(super) struct GeometryMaps {
+pub(super) struct FaceMaps {
     programs: [Program; 6],
     /// Smaller and smaller ones; the last is one texel.
     log_areas: Vec<Target>,
@@ -37,7 +37,7 @@ pub(super) struct GeometryMaps {
     is_known: bool,
 }
 
-impl GeometryMaps {
+impl FaceMaps {
     pub(super) fn new(gl: &Gl, size: UVec2, targets: &mut Targets) -> Result<Self> {
         let [log_areas, fold, areas, links, longer, bent] = sources().map(|source| Program::new(gl, &source));
         Ok(Self {
@@ -154,18 +154,18 @@ fn fold_sizes(size: UVec2) -> impl Iterator<Item = UVec2> {
 pub(super) fn sources() -> [ShaderSource; 6] {
     let extents = |label| ShaderSource::new(label).targets([TextureFormat::Rgba8Uint]);
     let surfaces = glsl!("common/surfaces.glsl");
-    let face = glsl!("light/tables/geometry/face.glsl");
+    let face = glsl!("light/tables/faces/face.glsl");
     let block = |label| ShaderSource::new(label).targets([TextureFormat::Rgba32Float]).define("BLOCK", BLOCK);
     [
-        block(LOG_AREAS).file(surfaces).file(glsl!("light/tables/geometry/log_areas.frag")),
-        block(FOLD).file(glsl!("light/tables/geometry/fold.frag")),
+        block(LOG_AREAS).file(surfaces).file(glsl!("light/tables/faces/log_areas.frag")),
+        block(FOLD).file(glsl!("light/tables/faces/fold.frag")),
         ShaderSource::new(AREAS)
             .targets([TextureFormat::R32Uint, TextureFormat::R32Float])
             .file(surfaces)
             .file(glsl!("light/tables/area_unit.glsl"))
-            .file(glsl!("light/tables/geometry/areas.frag")),
-        extents(LINKS).file(surfaces).file(face).file(glsl!("light/tables/geometry/links.frag")),
-        extents(LONGER).file(glsl!("light/tables/geometry/longer.frag")),
-        extents(BENT).file(surfaces).file(face).file(glsl!("light/tables/geometry/bent.frag")),
+            .file(glsl!("light/tables/faces/areas.frag")),
+        extents(LINKS).file(surfaces).file(face).file(glsl!("light/tables/faces/links.frag")),
+        extents(LONGER).file(glsl!("light/tables/faces/longer.frag")),
+        extents(BENT).file(surfaces).file(face).file(glsl!("light/tables/faces/bent.frag")),
     ]
 }
