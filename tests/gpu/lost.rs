@@ -367,7 +367,7 @@ fn objects_are_dropped_without_a_current_context() {
                 let said = String::from_utf8_lossy(&output.stdout);
                 assert!(output.status.success() && said.contains("1 passed"), "{kind}: {output:?}");
                 let also_said = String::from_utf8_lossy(&output.stderr);
-                assert!(also_said.contains("dropped 15 objects and the handle"), "{kind}: {also_said}");
+                assert!(also_said.contains("dropped 17 objects and the handle"), "{kind}: {also_said}");
             }
         }
     }

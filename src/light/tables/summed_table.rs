@@ -43,7 +43,8 @@ impl ScanPrograms {
             rows: programs(Axis::Rows, false)?,
             first_columns: programs(Axis::Columns, true)?,
             columns: programs(Axis::Columns, false)?,
-            nothing: Texture::of(gl, TextureShape::layered("nothing", channels.format(), UVec2::ONE, 1))?,
+            nothing: Texture::of(gl, TextureShape::layered("nothing", channels.format(), UVec2::ONE, 1))?
+                .labelled("nothing"),
         })
     }
 }

@@ -91,7 +91,7 @@ fn tables(watch: &Watch<'_>, surfaces: &SurfaceMaps, photons: &PhotonPoints) {
     let mut small = TablesStage::new(gl, UVec2::ONE).unwrap();
     assert!(small.gather(surfaces, density.flux().unwrap()).is_err());
     watch.unchanged("TablesStage::gather that fails");
-    let unknown = PhotonPoints::borrow(gl, watch.buffer(), 1).unwrap();
+    let unknown = PhotonPoints::borrow(gl, watch.buffer(), 0).unwrap();
     assert!(density.add(surfaces, &unknown).is_err());
     watch.unchanged("DensityStage::add of photons that are not known");
     let mut pipeline = IrradiancePipeline::new(gl, SIZE, IrradianceSettings::default()).unwrap();
