@@ -173,6 +173,7 @@ fn sources(args: &Args, settings: &Settings) -> Vec<ShaderSource> {
     let settings = Settings { planning: Planning::EachFrame, ..*settings };
     sources.extend(radius::shader_sources(density, &settings));
     sources.extend(light::spread_sources(args.kernel, args.radius));
+    sources.extend(light::tables_sources());
     sources.extend(render::shading_sources());
     sources
 }

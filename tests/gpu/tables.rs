@@ -72,7 +72,12 @@ fn on_pixels(surfaces: &SurfaceMaps, units: FluxUnits, count: u32) -> (Vec<Photo
         }
         #[expect(clippy::cast_precision_loss, reason = "small numbers")]
         let power = Vec3::new(0.3, 0.2, 0.1) * (1.0 + (index % 1013) as f32 / 77.0);
-        let photon = PhotonPoint { position: Vec3::from_slice(&place[..3]), normal: Vec3::from_slice(&facing[..3]), power, surface };
+        let photon = PhotonPoint {
+            position: Vec3::from_slice(&place[..3]),
+            normal: Vec3::from_slice(&facing[..3]),
+            power,
+            surface,
+        };
         let before: [u64; 4] = expected.at(x, y);
         let added = in_units(&photon, units);
         expected.set(x, y, std::array::from_fn(|channel| before[channel] + added[channel]));

@@ -162,8 +162,12 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
 
 /// Mean radius of the pixels that photons light, in pixels.
 fn mean_radius(layers: &Layers) -> f64 {
-    let lit =
-        layers.radius.values().iter().zip(layers.albedo.values()).filter(|(_, albedo)| albedo.iter().any(|&share| share > 0.0));
+    let lit = layers
+        .radius
+        .values()
+        .iter()
+        .zip(layers.albedo.values())
+        .filter(|(_, albedo)| albedo.iter().any(|&share| share > 0.0));
     let (sum, count) =
         lit.fold((0.0, 0.0), |(sum, count), (&radius, _)| (sum + f64::from(radius), count + 1.0));
     sum / f64::max(count, 1.0)
