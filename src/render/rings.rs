@@ -92,9 +92,9 @@ impl Run {
         middle /= whole;
         let (mut reach, mut spread) = (0.0_f64, 0.0);
         for (weight, run) in weighed() {
-            let squared = run.middle.as_dvec3().distance_squared(middle);
-            reach = reach.max(f64::from(run.reach) + squared.sqrt());
-            spread += weight * (f64::from(run.spread) + squared);
+            let away = run.middle.as_dvec3().distance_squared(middle);
+            reach = reach.max(f64::from(run.reach) + away.sqrt());
+            spread += weight * (f64::from(run.spread) + away);
         }
         Self {
             middle: middle.as_vec3(),
