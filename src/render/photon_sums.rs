@@ -154,6 +154,7 @@ fn along_z_curve(cell: UVec3) -> u64 {
 }
 
 #[cfg(test)]
+#[expect(clippy::cast_precision_loss, reason = "small numbers, and random bits")]
 mod tests {
     use std::f64::consts::PI;
 

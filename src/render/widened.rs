@@ -160,6 +160,7 @@ impl<'a> Neighbours<'a> {
 }
 
 #[cfg(test)]
+#[expect(clippy::cast_precision_loss, reason = "small numbers, and random bits")]
 mod tests {
     use glam::Vec3;
 
