@@ -40,7 +40,7 @@
 //! - [`guide`]: ten steps from photons or a density map to radii or light, with costs and the usual mistakes.
 //! - `docs/engines.md`: the interface in Rust, C and GLSL, and the features.
 //! - `docs/methods.md`: how radii are found, the variants, which sums are exact.
-//! - `docs/pictures.md`: how a picture is made, the window, files.
+//! - `docs/light.md`: light from tables. `docs/pictures.md`: how a picture is made, the window, files.
 //! - `docs/results.md`: what was measured. `docs/devices.md`: renderers and drivers.
 //! - [`gl::state_contract`]: every OpenGL state that is touched.
 //!
