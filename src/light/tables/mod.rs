@@ -2,7 +2,7 @@
 //! searched and no photon is drawn as a kernel.
 //!
 //! - A pixel's irradiance is the flux of a box around it over the area that the box sees, four fetches each.
-//!   The box ends where the face ends ([`faces`]).
+//!   The box ends where the face ends ([`face_maps`]).
 //! - Boxes have radii of 0, 1, 2, 4, ... 64 pixels. Each is compared with the one before: where the light
 //!   differs by no more than noise would make it, the wider one is better. Tests are pooled over a box twice
 //!   as wide, since that of one pixel is noise itself; between widths light is mixed.
@@ -14,7 +14,7 @@
 //! After F. Rousselle, C. Knaus, M. Zwicker, "Adaptive sampling and reconstruction using greedy error
 //! minimization" (2011), on the tables of F. Crow (1984).
 
-mod faces;
+mod face_maps;
 mod summed_table;
 
 use glam::UVec2;
@@ -25,7 +25,7 @@ use crate::gl::{
     bytes_of, glsl,
 };
 use crate::maps::{FluxMap, IrradianceMap, RadiusMap, SurfaceMaps};
-use faces::FaceMaps;
+use face_maps::FaceMaps;
 use summed_table::{Channels, ScanPrograms, SummedTable};
 
 const POINTS: &str = "flux of pixels";
@@ -215,7 +215,7 @@ impl TablesStage {
     fn steps_of_light(&self, flux: &FluxMap) -> f32 {
         let brightest = flux.totals().power.into_iter().fold(0.0, f64::max);
         let pixels = self.irradiance.size().as_dvec2().element_product();
-        let mean = brightest / f64::from(flux.units().power) / (pixels * faces::MEAN_AREA);
+        let mean = brightest / f64::from(flux.units().power) / (pixels * face_maps::MEAN_AREA);
         (f64::from(MOST_STEPS) / (BRIGHTEST * mean.max(1e-20))) as f32
     }
 
@@ -263,5 +263,5 @@ fn sources() -> [ShaderSource; 6] {
 
 /// All shaders of light from tables.
 pub(super) fn all_sources() -> Vec<ShaderSource> {
-    summed_table::all_sources().into_iter().chain(faces::sources()).chain(sources()).collect()
+    summed_table::all_sources().into_iter().chain(face_maps::sources()).chain(sources()).collect()
 }

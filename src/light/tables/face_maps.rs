@@ -154,18 +154,18 @@ fn fold_sizes(size: UVec2) -> impl Iterator<Item = UVec2> {
 pub(super) fn sources() -> [ShaderSource; 6] {
     let extents = |label| ShaderSource::new(label).targets([TextureFormat::Rgba8Uint]);
     let surfaces = glsl!("common/surfaces.glsl");
-    let face = glsl!("light/tables/faces/face.glsl");
+    let face = glsl!("light/tables/face_maps/face.glsl");
     let block = |label| ShaderSource::new(label).targets([TextureFormat::Rgba32Float]).define("BLOCK", BLOCK);
     [
-        block(LOG_AREAS).file(surfaces).file(glsl!("light/tables/faces/log_areas.frag")),
-        block(FOLD).file(glsl!("light/tables/faces/fold.frag")),
+        block(LOG_AREAS).file(surfaces).file(glsl!("light/tables/face_maps/log_areas.frag")),
+        block(FOLD).file(glsl!("light/tables/face_maps/fold.frag")),
         ShaderSource::new(AREAS)
             .targets([TextureFormat::R32Uint, TextureFormat::R32Float])
             .file(surfaces)
             .file(glsl!("light/tables/area_unit.glsl"))
-            .file(glsl!("light/tables/faces/areas.frag")),
-        extents(LINKS).file(surfaces).file(face).file(glsl!("light/tables/faces/links.frag")),
-        extents(LONGER).file(glsl!("light/tables/faces/longer.frag")),
-        extents(BENT).file(surfaces).file(face).file(glsl!("light/tables/faces/bent.frag")),
+            .file(glsl!("light/tables/face_maps/areas.frag")),
+        extents(LINKS).file(surfaces).file(face).file(glsl!("light/tables/face_maps/links.frag")),
+        extents(LONGER).file(glsl!("light/tables/face_maps/longer.frag")),
+        extents(BENT).file(surfaces).file(face).file(glsl!("light/tables/face_maps/bent.frag")),
     ]
 }
