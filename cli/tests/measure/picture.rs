@@ -6,8 +6,19 @@ use assert_cmd::Command;
 use predicates::str::contains;
 use varikernel_lab::bench::{PictureReport, PictureSuite};
 
-const ROWS: [&str; 8] =
-    ["copy", "points", "density", "radius", "splat-variable", "splat-fixed", "gather", "photons"];
+const ROWS: [&str; 11] = [
+    "copy",
+    "points",
+    "density",
+    "radius",
+    "splat-variable",
+    "splat-fixed",
+    "gather",
+    "flux",
+    "tables",
+    "tables-moved",
+    "photons",
+];
 
 fn check(report: &PictureReport) {
     let names: Vec<_> = report.rows.iter().map(|row| row.name.as_str()).collect();
@@ -30,7 +41,7 @@ fn check(report: &PictureReport) {
     assert!((density.copies.unwrap() / copies - 1.0).abs() < 1e-9);
     assert!((against_points.measured.unwrap() / ratio - 1.0).abs() < 1e-9);
     assert_eq!(against_points.holds, ratio <= 6.0);
-    let seconds = report.rows[7].statistics.median_ms / 1e3 / (f64::from(report.suite.photons) / 1e6);
+    let seconds = report.rows[10].statistics.median_ms / 1e3 / (f64::from(report.suite.photons) / 1e6);
     assert!((traced.measured.unwrap() - seconds).abs() < 1e-9, "{traced:?}");
     // A disc of radius 2 covers some 25 pixels, more as a quad around it.
     let fixed = report.rows[5].fragments_per_photon.unwrap();

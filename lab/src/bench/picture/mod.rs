@@ -10,11 +10,14 @@
 //! | `splat-variable` | every photon drawn as its kernel, by the radius map |
 //! | `splat-fixed` | the same with the fixed radius that is best in the glass box |
 //! | `gather` | every pixel gathering with its radius |
+//! | `flux` | the photons that contribute, counted, and their power added up in whole units |
+//! | `tables` | light from tables, from that flux on, while the camera stands still |
+//! | `tables-moved` | the same when the camera has moved |
 //! | `photons` | photons traced on the CPU, with 8 diffuse landings at most |
 //!
 //! Rows take turns, one sample each, so that a machine that slows down slows all alike. Every answer is
-//! checked: counts and radii against the definition, the gather against it at 61 pixels, points by their
-//! number, the splat by its energy, and landings by their tally.
+//! checked: counts, radii, flux and light from tables against their definitions, the gather against it at 61
+//! pixels, points by their number, the splat by its energy, and landings by their tally.
 
 mod rows;
 

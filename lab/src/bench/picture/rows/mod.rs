@@ -37,7 +37,7 @@ pub(super) enum Work {
     Gather,
     Flux,
     Tables,
-    TablesCamera,
+    TablesMoved,
     Photons,
 }
 
@@ -53,7 +53,7 @@ impl Work {
         Self::Gather,
         Self::Flux,
         Self::Tables,
-        Self::TablesCamera,
+        Self::TablesMoved,
         Self::Photons,
     ];
 
@@ -68,7 +68,7 @@ impl Work {
             Self::Gather => "gather",
             Self::Flux => "flux",
             Self::Tables => "tables",
-            Self::TablesCamera => "tables-camera",
+            Self::TablesMoved => "tables-moved",
             Self::Photons => "photons",
         }
     }
@@ -159,7 +159,7 @@ impl<'a> Rows<'a> {
             }
             Work::Flux => timer.time(|| self.tables.count()),
             Work::Tables => timer.time(|| self.tables.spread().map(drop)),
-            Work::TablesCamera => {
+            Work::TablesMoved => {
                 self.tables.forget_camera();
                 timer.time(|| self.tables.spread().map(drop))
             }
@@ -217,7 +217,7 @@ impl<'a> Rows<'a> {
             Work::SplatFixed => self.is_whole(work, 1)?,
             Work::Gather => self.is_gathered()?,
             Work::Flux => self.is_flux_right()?,
-            Work::Tables | Work::TablesCamera => self.is_tabled()?,
+            Work::Tables | Work::TablesMoved => self.is_tabled()?,
             Work::Photons => self.is_told()?,
         })
     }
