@@ -1,5 +1,6 @@
 //! `--light` of a picture and of the window.
 
+use anyhow::{Result, bail};
 use serde::{Deserialize, Serialize};
 use varikernel::settings::Estimate;
 
@@ -16,6 +17,16 @@ pub(crate) enum Light {
 }
 
 impl Light {
+    /// Refuses the first of the options about kernels that were given, where there are none.
+    pub(crate) fn check_kernels(self, given: impl IntoIterator<Item = &'static str>) -> Result<()> {
+        match given.into_iter().next() {
+            Some(option) if self == Self::Tables => {
+                bail!("{option} is for kernels, and light from tables has none\nhelp: add `--light splat`")
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// The library's word for it; `count_correction` is for a gather.
     pub(crate) fn estimate(self, count_correction: bool) -> Estimate {
         match self {

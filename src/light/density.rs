@@ -154,7 +154,7 @@ impl DensityStage {
         }
         let (before, all) = (flux.units(), *flux.totals() + *totals);
         let needed = FluxUnits::of(&all);
-        if flux.totals().count == 0 {
+        if self.map.bounds().total == 0 {
             flux.set(needed, all);
         } else if needed.max(before) == before {
             flux.set(before, all);

@@ -3,7 +3,7 @@
 use glam::{UVec2, Vec3};
 use varikernel::image::Image;
 use varikernel::light::TablesStage;
-use varikernel::maps::FluxUnits;
+use varikernel::maps::{FluxUnits, PhotonTotals};
 use varikernel::photon::PhotonPoint;
 use varikernel::reference::tables::Tables;
 use varikernel::render::draw_surfaces;
@@ -127,6 +127,27 @@ fn parts_add_up_and_units_grow_as_photons_come() {
     }
 }
 
+/// A host may know the power of its photons and not their number.
+#[test]
+fn parts_without_a_number_add_up_as_well() {
+    let gl = egl();
+    let surfaces = surfaces(&gl, "cornell-boxes");
+    let (photons, _) = on_pixels(&surfaces, FluxUnits { power: 1.0, square_root: 1.0 }, 1100);
+    let mut parts = DensityStage::with_flux(&gl, SIZE).unwrap();
+    for part in [&photons[..100], &photons[100..]] {
+        let mut points = PhotonPoints::new(&gl);
+        points.upload(part).unwrap();
+        points.set_totals(PhotonTotals { count: 0, ..PhotonTotals::of(part) });
+        parts.add(&surfaces, &points).unwrap();
+    }
+    let whole = counted(&gl, &surfaces, &[&photons]);
+    let sum = |stage: &DensityStage| {
+        let power = stage.flux().unwrap().read().unwrap();
+        power.values().iter().map(|power| power[0]).sum::<f64>()
+    };
+    assert!((sum(&parts) / sum(&whole) - 1.0).abs() < 1e-5, "{} for {}", sum(&parts), sum(&whole));
+}
+
 #[test]
 fn a_pixel_of_very_many_photons_is_exact_up_to_the_limit() {
     let gl = egl();
@@ -193,17 +214,26 @@ fn light_is_that_of_the_definition() {
         let anew = stage.gather(&surfaces, density.flux().unwrap()).unwrap().read().unwrap();
         assert!(again == found && anew == found, "{name}");
 
-        // One pixel that is a tenth brighter is seen, and so is one that is wider.
-        let mut brighter = found.clone();
-        brighter.set(30, 20, found.at(30, 20).map(|value| 1.1 * value));
-        let [light, radius] = apart(&surfaces, &density, &brighter);
-        assert!(light >= 2e-3 || radius >= 2e-3, "{name}: a planted difference");
+        // One pixel that is a hundredth brighter is seen, and so is one that is a little wider.
+        let brightest = (0..SIZE.element_product())
+            .map(|index| (index % SIZE.x, index / SIZE.x))
+            .max_by(|&(x, y), &(column, row)| found.at(x, y)[0].total_cmp(&found.at(column, row)[0]));
+        let (x, y) = brightest.unwrap();
+        let [red, green, blue, width] = found.at(x, y);
+        let planted = |pixel| {
+            let mut planted = found.clone();
+            planted.set(x, y, pixel);
+            apart(&surfaces, &density, &planted)
+        };
+        let [light, radius] = planted([1.01 * red, green, blue, width]);
+        assert!(light >= 2e-3 && radius < 2e-3, "{name}: {light} {radius}");
+        let [light, radius] = planted([red, green, blue, 1.01 * width + 0.01]);
+        assert!(light < 2e-3 && radius >= 2e-3, "{name}: {light} {radius}");
     }
 }
 
 #[test]
 fn every_size_gives_what_its_definition_says() {
-    // See `light_is_that_of_the_definition`; here lines and odd sizes.
     let gl = egl();
     let scene = Scene::shipped("cornell-empty").unwrap();
     for size in [UVec2::ONE, UVec2::new(1, 70), UVec2::new(300, 1), UVec2::new(9, 8), UVec2::new(65, 17)] {
@@ -215,9 +245,13 @@ fn every_size_gives_what_its_definition_says() {
         let mut stage = TablesStage::new(&gl, size).unwrap();
         let found = stage.gather(&surfaces, density.flux().unwrap()).unwrap().read().unwrap();
         assert!(found.values().iter().flatten().all(|value| value.is_finite()), "{size}");
-        let lit = found.values().iter().filter(|pixel| pixel[0] > 0.0).count();
-        let counted = density.read_counts().unwrap().values().iter().any(|&count| count > 0.0);
-        assert_eq!(lit > 0, counted, "{size}: {lit}");
+        let is_lit = found.values().iter().any(|pixel| pixel[0] > 0.0);
+        let is_counted = density.read_counts().unwrap().values().iter().any(|&count| count > 0.0);
+        assert_eq!(is_lit, is_counted, "{size}");
+        if is_lit {
+            let [light, radius] = apart(&surfaces, &density, &found);
+            assert!(light < 2e-3 && radius < 2e-3, "{size}: {light} {radius}");
+        }
     }
 }
 

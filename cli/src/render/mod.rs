@@ -95,13 +95,9 @@ impl Args {
         if self.count_correction && self.light != Light::Gather {
             bail!("--count-correction is for gathers\nhelp: add --light gather");
         }
+        // A reference refuses them itself.
         let radius = self.radius.map(|_| "--radius");
-        match self.source.kernel_options().chain(radius).next() {
-            Some(option) if self.light == Light::Tables && self.reference.is_none() => {
-                bail!("{option} is for kernels, which light from tables has none of\nhelp: add --light splat")
-            }
-            _ => Ok(()),
-        }
+        self.light.check_kernels(self.source.kernel_options().chain(radius))
     }
 }
 

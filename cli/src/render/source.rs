@@ -98,8 +98,8 @@ impl Source {
     /// The options about kernels that were given.
     pub(crate) fn kernel_options(&self) -> impl Iterator<Item = &'static str> {
         let given = [
-            (self.min_photons.is_some(), "--min-photons"),
-            (self.max_radius.is_some(), "--max-radius"),
+            (self.min_photons.is_some(), "-n"),
+            (self.max_radius.is_some(), "-r"),
             (self.kernel.is_some(), "--kernel"),
         ];
         given.into_iter().filter_map(|(is_given, option)| is_given.then_some(option))

@@ -205,20 +205,15 @@ fn check_source(path: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Light from tables has none of what these options are about.
-fn refuse_kernels(args: &Args) -> Result<()> {
+/// The options about kernels that were given.
+fn kernel_options(args: &Args) -> impl Iterator<Item = &'static str> {
     let given = [
-        ("-n", args.min_photons.is_some()),
-        ("-r", args.max_radius.is_some()),
-        ("--radius", args.radius.is_some()),
-        ("--kernel", args.kernel.is_some()),
+        (args.min_photons.is_some(), "-n"),
+        (args.max_radius.is_some(), "-r"),
+        (args.radius.is_some(), "--radius"),
+        (args.kernel.is_some(), "--kernel"),
     ];
-    match given.into_iter().find(|(_, is_given)| *is_given) {
-        Some((option, _)) => {
-            bail!("{option} is about kernels, and light from tables has none\nhelp: add `--light splat`")
-        }
-        None => Ok(()),
-    }
+    given.into_iter().filter_map(|(is_given, option)| is_given.then_some(option))
 }
 
 fn choices(args: &Args) -> Result<Choices> {
@@ -226,8 +221,8 @@ fn choices(args: &Args) -> Result<Choices> {
         return Choices::load(&args.source);
     }
     let is_map = Format::of(&args.source).is_ok();
-    if !is_map && args.light == Light::Tables {
-        refuse_kernels(args)?;
+    if !is_map {
+        args.light.check_kernels(kernel_options(args))?;
     }
     let (n, max) = if is_map { (25, 32) } else { (400, 64) };
     let (variable, fixed_radius) = match args.radius {

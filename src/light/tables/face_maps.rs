@@ -27,6 +27,13 @@ const DOUBLINGS: u32 = 7;
 #[derive(Debug)]
 pub(super) struct FaceMaps {
     programs: [Program; 6],
+    maps: Maps,
+    is_known: bool,
+}
+
+/// What depends on the size.
+#[derive(Debug)]
+struct Maps {
     /// Smaller and smaller ones; the last is one texel.
     log_areas: Vec<Target>,
     /// Units of area, and what flux is weighed with.
@@ -34,7 +41,18 @@ pub(super) struct FaceMaps {
     table: SummedTable,
     /// Two that take turns.
     extents: [Target; 2],
-    is_known: bool,
+}
+
+impl Maps {
+    /// In the order of [`FaceMaps::shapes`].
+    fn take(size: UVec2, targets: &mut Targets) -> Self {
+        Self {
+            log_areas: fold_sizes(size).map(|_| targets.take()).collect(),
+            areas: targets.take(),
+            table: SummedTable::take(size, targets),
+            extents: [targets.take(), targets.take()],
+        }
+    }
 }
 
 impl FaceMaps {
@@ -42,10 +60,7 @@ impl FaceMaps {
         let [log_areas, fold, areas, links, longer, bent] = sources().map(|source| Program::new(gl, &source));
         Ok(Self {
             programs: [log_areas?, fold?, areas?, links?, longer?, bent?],
-            log_areas: fold_sizes(size).map(|_| targets.take()).collect(),
-            areas: targets.take(),
-            table: SummedTable::take(size, targets),
-            extents: [targets.take(), targets.take()],
+            maps: Maps::take(size, targets),
             is_known: false,
         })
     }
@@ -64,10 +79,7 @@ impl FaceMaps {
     }
 
     pub(super) fn resize(&mut self, size: UVec2, targets: &mut Targets) {
-        self.log_areas = fold_sizes(size).map(|_| targets.take()).collect();
-        self.areas = targets.take();
-        self.table = SummedTable::take(size, targets);
-        self.extents = [targets.take(), targets.take()];
+        self.maps = Maps::take(size, targets);
         self.is_known = false;
     }
 
@@ -90,19 +102,23 @@ impl FaceMaps {
                 .set("camera", view.position())
         };
         let map_size = surfaces.size().as_ivec2();
-        of_areas(LOG_AREAS, log_areas).set("map_size", map_size).fill(&mut self.log_areas[0])?;
-        for index in 1..self.log_areas.len() {
-            let (smaller, larger) = self.log_areas.split_at_mut(index);
+        let maps = &mut self.maps;
+        of_areas(LOG_AREAS, log_areas).set("map_size", map_size).fill(&mut maps.log_areas[0])?;
+        for index in 1..maps.log_areas.len() {
+            let (smaller, larger) = maps.log_areas.split_at_mut(index);
             Pass::new(FOLD, fold).read("sums", smaller[index - 1].texture()).fill(&mut larger[0])?;
         }
-        let [extents, spare] = &mut self.extents;
-        surfaces.read_places_by(Pass::new(LINKS, links)).set("map_size", map_size).fill(extents)?;
-        of_areas(AREAS, areas)
-            .read("log_areas", self.log_areas[self.log_areas.len() - 1].texture())
-            .read("links", extents.texture())
+        surfaces
+            .read_places_by(Pass::new(LINKS, links))
             .set("map_size", map_size)
-            .fill(&mut self.areas)?;
-        self.table.build(one, self.areas.texture())?;
+            .fill(&mut maps.extents[0])?;
+        of_areas(AREAS, areas)
+            .read("log_areas", maps.log_areas[maps.log_areas.len() - 1].texture())
+            .read("links", maps.extents[0].texture())
+            .set("map_size", map_size)
+            .fill(&mut maps.areas)?;
+        maps.table.build(one, maps.areas.texture())?;
+        let [extents, spare] = &mut maps.extents;
         for doubling in 0..DOUBLINGS {
             Pass::new(LONGER, longer)
                 .read("shorter", extents.texture())
@@ -121,26 +137,26 @@ impl FaceMaps {
 
     /// One texel, for the unit of areas.
     pub(super) fn log_areas(&self) -> &Texture {
-        self.log_areas[self.log_areas.len() - 1].texture()
+        self.maps.log_areas[self.maps.log_areas.len() - 1].texture()
     }
 
     /// In units, of each pixel.
     pub(super) fn areas(&self) -> &Texture {
-        self.areas.texture()
+        self.maps.areas.texture()
     }
 
     /// What flux is multiplied with.
     pub(super) fn weights(&self) -> &Texture {
-        &self.areas.textures()[1]
+        &self.maps.areas.textures()[1]
     }
 
     /// Sums of areas.
     pub(super) fn table(&self) -> &Texture {
-        self.table.texture()
+        self.maps.table.texture()
     }
 
     pub(super) fn extents(&self) -> &Texture {
-        self.extents[0].texture()
+        self.maps.extents[0].texture()
     }
 }
 

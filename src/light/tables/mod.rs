@@ -53,6 +53,12 @@ pub struct TablesStage {
     smooth: Program,
     widths: Program,
     faces: FaceMaps,
+    maps: Maps,
+}
+
+/// What depends on the size beside the faces.
+#[derive(Debug)]
+struct Maps {
     points: Target,
     flux_table: SummedTable,
     /// Of narrow boxes at each pixel, and of wide ones at every second.
@@ -63,6 +69,22 @@ pub struct TablesStage {
     light_table: SummedTable,
     irradiance: IrradianceMap,
     radii: RadiusMap,
+}
+
+impl Maps {
+    /// In the order of [`TablesStage::shapes`].
+    fn take(size: UVec2, targets: &mut Targets) -> Self {
+        Self {
+            points: targets.take(),
+            flux_table: SummedTable::take(size, targets),
+            ratios: [targets.take(), targets.take()],
+            ratio_tables: [SummedTable::take(size, targets), SummedTable::take(halved(size), targets)],
+            gathered: targets.take(),
+            light_table: SummedTable::take(size, targets),
+            irradiance: IrradianceMap::of(targets.take()),
+            radii: RadiusMap::of(targets.take()),
+        }
+    }
 }
 
 impl TablesStage {
@@ -85,14 +107,7 @@ impl TablesStage {
             smooth: Program::new(gl, &smooth)?,
             widths: Program::new(gl, &widths)?,
             faces: FaceMaps::new(gl, size, targets)?,
-            points: targets.take(),
-            flux_table: SummedTable::take(size, targets),
-            ratios: [targets.take(), targets.take()],
-            ratio_tables: [SummedTable::take(size, targets), SummedTable::take(halved(size), targets)],
-            gathered: targets.take(),
-            light_table: SummedTable::take(size, targets),
-            irradiance: IrradianceMap::of(targets.take()),
-            radii: RadiusMap::of(targets.take()),
+            maps: Maps::take(size, targets),
         })
     }
 
@@ -123,14 +138,7 @@ impl TablesStage {
     /// Goes on with other targets.
     pub(super) fn resize(&mut self, size: UVec2, targets: &mut Targets) {
         self.faces.resize(size, targets);
-        self.points = targets.take();
-        self.flux_table = SummedTable::take(size, targets);
-        self.ratios = [targets.take(), targets.take()];
-        self.ratio_tables = [SummedTable::take(size, targets), SummedTable::take(halved(size), targets)];
-        self.gathered = targets.take();
-        self.light_table = SummedTable::take(size, targets);
-        self.irradiance = IrradianceMap::of(targets.take());
-        self.radii = RadiusMap::of(targets.take());
+        self.maps = Maps::take(size, targets);
     }
 
     /// The camera or what it sees has changed: areas and extents are made anew by the next
@@ -146,7 +154,7 @@ impl TablesStage {
     /// [`Error::Mismatch`](crate::Error::Mismatch) if a map has another size; [`Error::Gl`](crate::Error::Gl)
     /// if the driver fails.
     pub fn gather(&mut self, surfaces: &SurfaceMaps, flux: &FluxMap) -> Result<&IrradianceMap> {
-        surfaces.check_size(self.irradiance.size())?;
+        surfaces.check_size(self.maps.irradiance.size())?;
         let [low, high] = flux.as_textures();
         surfaces.check_size(low.size())?;
         let _state = StateGuard::new(&self.gl);
@@ -156,65 +164,65 @@ impl TablesStage {
             .read("low", low)
             .read("high", high)
             .read("weights", self.faces.weights())
-            .fill(&mut self.points)?;
-        self.flux_table.build(&self.four, self.points.texture())?;
+            .fill(&mut self.maps.points)?;
+        self.maps.flux_table.build(&self.four, self.maps.points.texture())?;
 
         let units = flux.units();
         let square = f64::from(units.square_root).powi(2);
         #[expect(clippy::cast_possible_truncation, reason = "quotients within the range of f32")]
         let (square_unit, usual_square) =
             ((square / f64::from(units.power).powi(2)) as f32, (flux.totals().mean_square() / square) as f32);
-        let [fine, coarse] = &mut self.ratios;
+        let [fine, coarse] = &mut self.maps.ratios;
         for (label, program, target) in
             [(TEST_FINE, &self.tests[0], &mut *fine), (TEST_COARSE, &self.tests[1], &mut *coarse)]
         {
             let pass = Pass::new(label, program)
                 .read("extents", self.faces.extents())
-                .read("flux_table", self.flux_table.texture())
+                .read("flux_table", self.maps.flux_table.texture())
                 .read("area_table", self.faces.table())
                 .set("square_unit", square_unit)
                 .set("usual_square", usual_square);
             if label == TEST_FINE {
-                pass.read("points", self.points.texture()).read("areas", self.faces.areas())
+                pass.read("points", self.maps.points.texture()).read("areas", self.faces.areas())
             } else {
                 pass
             }
             .fill(target)?;
         }
-        for (table, ratios) in self.ratio_tables.iter_mut().zip(&self.ratios) {
+        for (table, ratios) in self.maps.ratio_tables.iter_mut().zip(&self.maps.ratios) {
             table.build(&self.four, ratios.texture())?;
         }
         let steps = self.steps_of_light(flux);
         Pass::new(GATHER, &self.gather)
             .read("normal", surfaces.normal())
             .read("extents", self.faces.extents())
-            .read("flux_table", self.flux_table.texture())
+            .read("flux_table", self.maps.flux_table.texture())
             .read("area_table", self.faces.table())
-            .read("fine_tests", self.ratio_tables[0].texture())
-            .read("coarse_tests", self.ratio_tables[1].texture())
+            .read("fine_tests", self.maps.ratio_tables[0].texture())
+            .read("coarse_tests", self.maps.ratio_tables[1].texture())
             .set("steps_of_light", steps)
-            .fill(&mut self.gathered)?;
-        self.light_table.build(&self.four, &self.gathered.textures()[1])?;
+            .fill(&mut self.maps.gathered)?;
+        self.maps.light_table.build(&self.four, &self.maps.gathered.textures()[1])?;
         Pass::new(SMOOTH, &self.smooth)
-            .read("gathered", self.gathered.texture())
+            .read("gathered", self.maps.gathered.texture())
             .read("extents", self.faces.extents())
-            .read("light_table", self.light_table.texture())
+            .read("light_table", self.maps.light_table.texture())
             .read("log_areas", self.faces.log_areas())
             .set("steps_of_light", steps)
             .set("flux_unit", units.power)
-            .fill(self.irradiance.target())?;
+            .fill(self.maps.irradiance.target())?;
         Pass::new(WIDTHS, &self.widths)
-            .read("irradiance", self.irradiance.as_texture())
-            .fill(self.radii.target())?;
+            .read("irradiance", self.maps.irradiance.as_texture())
+            .fill(self.maps.radii.target())?;
         self.gl.check("gathering light from tables")?;
-        Ok(&self.irradiance)
+        Ok(&self.maps.irradiance)
     }
 
     /// Steps of one unit of power over one of area: the mean light is a 64th of the most, or less.
     #[expect(clippy::cast_possible_truncation, reason = "within the range of f32")]
     fn steps_of_light(&self, flux: &FluxMap) -> f32 {
         let brightest = flux.totals().power.into_iter().fold(0.0, f64::max);
-        let pixels = self.irradiance.size().as_dvec2().element_product();
+        let pixels = self.maps.irradiance.size().as_dvec2().element_product();
         let mean = brightest / f64::from(flux.units().power) / (pixels * face_maps::MEAN_AREA);
         (f64::from(MOST_STEPS) / (BRIGHTEST * mean.max(1e-20))) as f32
     }
@@ -222,13 +230,13 @@ impl TablesStage {
     /// How wide each pixel's light was gathered, in pixels; 0 where nothing is lit.
     #[must_use]
     pub fn radii(&self) -> &RadiusMap {
-        &self.radii
+        &self.maps.radii
     }
 
     /// What was gathered last.
     #[must_use]
     pub fn irradiance(&self) -> &IrradianceMap {
-        &self.irradiance
+        &self.maps.irradiance
     }
 }
 
