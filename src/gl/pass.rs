@@ -117,6 +117,22 @@ impl Target {
         }
     }
 
+    /// Sets level 0 of the textures, without layers, to 0.
+    pub(crate) fn clear_to_zero(&mut self) {
+        let Some(glow) = self.gl.live() else { return };
+        for (buffer, texture) in (0..).zip(&self.textures) {
+            // SAFETY: the context is current while the handle lives, and the values are of the buffer's kind.
+            unsafe {
+                glow.bind_framebuffer(glow::DRAW_FRAMEBUFFER, Some(self.framebuffers[0]));
+                if texture.format().is_float() {
+                    glow.clear_buffer_f32_slice(glow::COLOR, buffer, &[0.0; 4]);
+                } else {
+                    glow.clear_buffer_u32_slice(glow::COLOR, buffer, &[0; 4]);
+                }
+            }
+        }
+    }
+
     /// The format of each draw buffer.
     fn formats(&self) -> Vec<TextureFormat> {
         let of =

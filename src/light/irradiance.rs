@@ -35,6 +35,8 @@ pub struct IrradiancePipeline {
     radii: Option<(Settings, RadiusPipeline)>,
     /// Whether the radii are those of all photons counted.
     searched: bool,
+    /// Whether the light is that of all photons counted, by tables: it need not be gathered again.
+    gathered: bool,
     spreads: Spreads,
 }
 
@@ -58,6 +60,7 @@ impl IrradiancePipeline {
                 None
             },
             searched: false,
+            gathered: false,
             spreads: Spreads::new(gl, size, &settings)?,
         })
     }
@@ -103,6 +106,7 @@ impl IrradiancePipeline {
         self.spreads.resize(size, &mut targets);
         targets.finish();
         self.searched = false;
+        self.gathered = false;
         Ok(())
     }
 
@@ -144,7 +148,8 @@ impl IrradiancePipeline {
             self.searched = false;
         }
         // What the stage held when it was used last is of other settings or photons.
-        self.spreads.clear();
+        self.clear_light();
+        self.gathered = false;
         self.settings = settings;
         Ok(())
     }
@@ -175,7 +180,10 @@ impl IrradiancePipeline {
     /// # Errors
     /// As [`DensityStage::add`].
     pub fn count(&mut self, surfaces: &SurfaceMaps, photons: &PhotonPoints) -> Result<&DensityMap> {
-        self.searched = false;
+        if photons.count() > 0 {
+            self.searched = false;
+            self.gathered = false;
+        }
         self.density.add(surfaces, photons)
     }
 
@@ -195,11 +203,16 @@ impl IrradiancePipeline {
 
     /// Spreads these photons, which were counted before, with the radii of all photons so far, and adds their
     /// light to what is there; a gather finds the light of all photons instead. Radii are searched if they
-    /// were not since photons came.
+    /// were not since photons came. Light from tables stays where no photon came and the camera stands still.
     ///
     /// # Errors
     /// As [`add`](Self::add).
     pub fn spread(&mut self, surfaces: &SurfaceMaps, photons: &PhotonPoints) -> Result<&IrradianceMap> {
+        if self.gathered {
+            surfaces.check_size(self.size())?;
+            self.gl.current()?;
+            return Ok(self.spreads.irradiance());
+        }
         if !self.searched {
             self.search()?;
         }
@@ -209,7 +222,9 @@ impl IrradiancePipeline {
             // Tables ask for none.
             (KernelRadius::Variable, None) => KernelRadii::Fixed(0),
         };
-        self.spreads.add(surfaces, photons, &self.density, radius)
+        let irradiance = self.spreads.add(surfaces, photons, &self.density, radius)?;
+        self.gathered = self.settings.estimate == Estimate::Tables;
+        Ok(irradiance)
     }
 
     /// Forgets all photons and their light: when the camera or what it sees has moved.
@@ -223,12 +238,14 @@ impl IrradiancePipeline {
     /// without this, or [`clear`](Self::clear), these are taken to stand still.
     pub fn forget_camera(&mut self) {
         self.spreads.forget_camera();
+        self.gathered = false;
     }
 
     /// Forgets the photons that were counted.
     pub fn clear_photons(&mut self) {
         self.density.clear();
         self.searched = false;
+        self.gathered = false;
     }
 
     /// Forgets the light, and keeps the photons that were counted.

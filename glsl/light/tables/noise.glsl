@@ -41,9 +41,12 @@ float threshold(float fine, float coarse)
 }
 
 // The square of the difference of light over what noise alone would make of it, over its threshold: less than
-// 1 where the wider box is better.
+// 1 where the wider box is better, and 0 where it holds nothing.
 float ratio(Held fine, Held coarse, float limit)
 {
+    if (coarse.flux == 0.0) {
+        return 0.0;
+    }
     if (coarse.area <= fine.area) {
         return 1.0;
     }

@@ -9,6 +9,7 @@
 //! - There is no n: where photons are many or light changes, boxes stay small.
 //! - Exact: sums of whole numbers modulo 2^32, the same whatever the order of the photons (see
 //!   [`FluxMap`]). Quotients are f32.
+//! - Tiles that no photon is in reach of cost nothing but tables.
 //! - Cost: whatever the number of photons and the widths. Memory: about 250 bytes a pixel.
 //!
 //! After F. Rousselle, C. Knaus, M. Zwicker, "Adaptive sampling and reconstruction using greedy error
@@ -21,8 +22,8 @@ use glam::UVec2;
 
 use crate::error::Result;
 use crate::gl::{
-    Gl, Pass, Program, ShaderSource, StateGuard, Target, TargetShape, Targets, TextureFormat, TextureShape,
-    bytes_of, glsl,
+    Gl, Pass, Program, ShaderSource, StateGuard, Target, TargetShape, Targets, Texture, TextureFormat,
+    TextureShape, bytes_of, glsl,
 };
 use crate::maps::{FluxMap, IrradianceMap, RadiusMap, SurfaceMaps};
 use face_maps::FaceMaps;
@@ -31,15 +32,24 @@ use summed_table::{Channels, ScanPrograms, SummedTable};
 const POINTS: &str = "flux of pixels";
 const TEST_FINE: &str = "test of noise, narrow";
 const TEST_COARSE: &str = "test of noise, wide";
+const POOL: &str = "pooled tests of noise";
 const GATHER: &str = "light from tables";
 const SMOOTH: &str = "smooth light";
 const WIDTHS: &str = "widths of light";
+/// Pixels of the side of a tile that is left out where no photon is in reach.
+const TILE_SIDE: u32 = 64;
+/// As far as light goes: the widest box, then the widest that it is smoothed over, and a pixel whose neighbour's
+/// shares hold for it.
+const REACH: u32 = 64 + MOST_SMOOTH + 2;
 /// The widest box that light is smoothed over, by its radius in pixels.
 const MOST_SMOOTH: u32 = 16;
 /// As many steps of light a pixel as such a box can sum in 32 bits.
 const MOST_STEPS: u32 = u32::MAX / ((2 * MOST_SMOOTH + 1) * (2 * MOST_SMOOTH + 1));
 /// How many times the mean light that is; what is brighter is not smoothed with what is darker.
 const BRIGHTEST: f64 = 64.0;
+
+/// Boxes of pixels and sums over them.
+const BOX: (&str, &str) = glsl!("light/tables/box.glsl");
 
 /// Gathers light from tables into maps of one size.
 #[derive(Debug)]
@@ -49,6 +59,7 @@ pub struct TablesStage {
     four: ScanPrograms,
     points_program: Program,
     tests: [Program; 2],
+    pool: Program,
     gather: Program,
     smooth: Program,
     widths: Program,
@@ -64,6 +75,8 @@ struct Maps {
     /// Of narrow boxes at each pixel, and of wide ones at every second.
     ratios: [Target; 2],
     ratio_tables: [SummedTable; 2],
+    /// How far each width's test lets it be mixed in, at every second pixel.
+    shares: Target,
     /// Light, and the same in whole steps.
     gathered: Target,
     light_table: SummedTable,
@@ -79,6 +92,7 @@ impl Maps {
             flux_table: SummedTable::take(size, targets),
             ratios: [targets.take(), targets.take()],
             ratio_tables: [SummedTable::take(size, targets), SummedTable::take(halved(size), targets)],
+            shares: targets.take(),
             gathered: targets.take(),
             light_table: SummedTable::take(size, targets),
             irradiance: IrradianceMap::of(targets.take()),
@@ -95,7 +109,7 @@ impl TablesStage {
     /// refuses a shader; [`Error::Gl`](crate::Error::Gl) when memory runs out.
     pub fn new(gl: &Gl, size: UVec2) -> Result<Self> {
         let _state = StateGuard::new(gl);
-        let [points, fine, coarse, gather, smooth, widths] = sources();
+        let [points, fine, coarse, pool, gather, smooth, widths] = sources();
         let targets = &mut Targets::new(gl, &Self::shapes(size))?;
         Ok(Self {
             gl: gl.clone(),
@@ -103,6 +117,7 @@ impl TablesStage {
             four: ScanPrograms::new(gl, Channels::Four)?,
             points_program: Program::new(gl, &points)?,
             tests: [Program::new(gl, &fine)?, Program::new(gl, &coarse)?],
+            pool: Program::new(gl, &pool)?,
             gather: Program::new(gl, &gather)?,
             smooth: Program::new(gl, &smooth)?,
             widths: Program::new(gl, &widths)?,
@@ -115,11 +130,13 @@ impl TablesStage {
     pub(super) fn shapes(size: UVec2) -> Vec<TargetShape> {
         let four = |label, size| vec![TextureShape::new(label, TextureFormat::Rgba32Uint, size)];
         let table = |size| SummedTable::shapes(Channels::Four, size);
+        let shares = |label, size| TextureShape::new(label, TextureFormat::Rgba32Float, halved(size));
         let mut shapes = FaceMaps::shapes(size);
         shapes.push(four(POINTS, size));
         shapes.extend(table(size));
         shapes.extend([four(TEST_FINE, size), four(TEST_COARSE, halved(size))]);
         shapes.extend([table(size), table(halved(size))].concat());
+        shapes.push(["narrow shares", "wide shares"].map(|label| shares(label, size)).to_vec());
         shapes.push(vec![
             TextureShape::new(GATHER, TextureFormat::Rgba32Float, size),
             TextureShape::new("steps of light", TextureFormat::Rgba32Uint, size),
@@ -166,6 +183,7 @@ impl TablesStage {
             .read("weights", self.faces.weights())
             .fill(&mut self.maps.points)?;
         self.maps.flux_table.build(&self.four, self.maps.points.texture())?;
+        let (size, flux_table) = (self.maps.irradiance.size(), self.maps.flux_table.texture());
 
         let units = flux.units();
         let square = f64::from(units.square_root).powi(2);
@@ -178,39 +196,43 @@ impl TablesStage {
         {
             let pass = Pass::new(label, program)
                 .read("extents", self.faces.extents())
-                .read("flux_table", self.maps.flux_table.texture())
                 .read("area_table", self.faces.table())
                 .set("square_unit", square_unit)
                 .set("usual_square", usual_square);
-            if label == TEST_FINE {
+            let pass = if label == TEST_FINE {
                 pass.read("points", self.maps.points.texture()).read("areas", self.faces.areas())
             } else {
                 pass
-            }
-            .fill(target)?;
+            };
+            fill_lit(pass, flux_table, size, target)?;
         }
         for (table, ratios) in self.maps.ratio_tables.iter_mut().zip(&self.maps.ratios) {
             table.build(&self.four, ratios.texture())?;
         }
+        let pool = Pass::new(POOL, &self.pool)
+            .read("extents", self.faces.extents())
+            .read("fine_tests", self.maps.ratio_tables[0].texture())
+            .read("coarse_tests", self.maps.ratio_tables[1].texture());
+        fill_lit(pool, flux_table, size, &mut self.maps.shares)?;
         let steps = self.steps_of_light(flux);
-        Pass::new(GATHER, &self.gather)
+        let [narrow, wide] = self.maps.shares.textures() else { unreachable!("two attachments") };
+        let gather = Pass::new(GATHER, &self.gather)
             .read("normal", surfaces.normal())
             .read("extents", self.faces.extents())
-            .read("flux_table", self.maps.flux_table.texture())
             .read("area_table", self.faces.table())
-            .read("fine_tests", self.maps.ratio_tables[0].texture())
-            .read("coarse_tests", self.maps.ratio_tables[1].texture())
-            .set("steps_of_light", steps)
-            .fill(&mut self.maps.gathered)?;
+            .read("narrow_shares", narrow)
+            .read("wide_shares", wide)
+            .set("steps_of_light", steps);
+        fill_lit(gather, flux_table, size, &mut self.maps.gathered)?;
         self.maps.light_table.build(&self.four, &self.maps.gathered.textures()[1])?;
-        Pass::new(SMOOTH, &self.smooth)
+        let smooth = Pass::new(SMOOTH, &self.smooth)
             .read("gathered", self.maps.gathered.texture())
             .read("extents", self.faces.extents())
             .read("light_table", self.maps.light_table.texture())
             .read("log_areas", self.faces.log_areas())
             .set("steps_of_light", steps)
-            .set("flux_unit", units.power)
-            .fill(self.maps.irradiance.target())?;
+            .set("flux_unit", units.power);
+        fill_lit(smooth, flux_table, size, self.maps.irradiance.target())?;
         Pass::new(WIDTHS, &self.widths)
             .read("irradiance", self.maps.irradiance.as_texture())
             .fill(self.maps.radii.target())?;
@@ -240,29 +262,48 @@ impl TablesStage {
     }
 }
 
+/// Fills the tiles of a map of `size` that a photon is in reach of, or a target of every second pixel and row
+/// of it; the others are 0.
+fn fill_lit<'a>(pass: Pass<'a>, flux_table: &'a Texture, size: UVec2, target: &mut Target) -> Result<()> {
+    let grid = (size + TILE_SIDE - 1) / TILE_SIDE;
+    target.clear_to_zero();
+    pass.read("flux_table", flux_table)
+        .set("map_size", size.as_ivec2())
+        .set("tile_columns", grid.x.cast_signed())
+        .triangles(2 * grid.x * grid.y)
+        .fill(target)
+}
+
 /// Every second pixel of every second row.
 fn halved(size: UVec2) -> UVec2 {
     size.map(|side| side.div_ceil(2))
 }
 
 /// The shaders of each frame beside those of tables, in the order of the passes.
-fn sources() -> [ShaderSource; 6] {
+fn sources() -> [ShaderSource; 7] {
     let four = |label| ShaderSource::new(label).targets([TextureFormat::Rgba32Uint]);
-    let test =
-        |label| four(label).file(glsl!("light/tables/box.glsl")).file(glsl!("light/tables/noise.glsl"));
+    // In lit tiles of a target with a texel for each `step`-th pixel.
+    let lit = |source: ShaderSource, step: u32| {
+        source
+            .define("TILE_SIDE", TILE_SIDE)
+            .define("REACH", REACH)
+            .define("STEP", step)
+            .vertex_file(BOX)
+            .vertex_file(glsl!("light/tables/lit_tiles.vert"))
+            .file(BOX)
+    };
+    let test = |label, step| lit(four(label), step).file(glsl!("light/tables/noise.glsl"));
+    let of_light = |label, formats: &[TextureFormat]| ShaderSource::new(label).targets(formats.to_vec());
     [
         four(POINTS).file(glsl!("light/tables/points.frag")),
-        test(TEST_FINE).file(glsl!("light/tables/test_fine.frag")),
-        test(TEST_COARSE).file(glsl!("light/tables/test_coarse.frag")),
-        ShaderSource::new(GATHER)
-            .targets([TextureFormat::Rgba32Float, TextureFormat::Rgba32Uint])
+        test(TEST_FINE, 1).file(glsl!("light/tables/test_fine.frag")),
+        test(TEST_COARSE, 2).file(glsl!("light/tables/test_coarse.frag")),
+        lit(of_light(POOL, &[TextureFormat::Rgba32Float; 2]), 2).file(glsl!("light/tables/pool.frag")),
+        lit(of_light(GATHER, &[TextureFormat::Rgba32Float, TextureFormat::Rgba32Uint]), 1)
             .define("MOST_STEPS", MOST_STEPS)
-            .file(glsl!("light/tables/box.glsl"))
             .file(glsl!("light/tables/gather.frag")),
-        ShaderSource::new(SMOOTH)
-            .targets([TextureFormat::Rgba32Float])
+        lit(of_light(SMOOTH, &[TextureFormat::Rgba32Float]), 1)
             .define("MOST_SMOOTH", MOST_SMOOTH)
-            .file(glsl!("light/tables/box.glsl"))
             .file(glsl!("light/tables/area_unit.glsl"))
             .file(glsl!("light/tables/smooth.frag")),
         ShaderSource::new(WIDTHS).targets([TextureFormat::R32Uint]).file(glsl!("light/tables/widths.frag")),

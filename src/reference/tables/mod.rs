@@ -108,7 +108,8 @@ impl Tables {
         let sums = Sums::of(self);
         let ratios: Vec<Table> =
             (1..RADII.len()).map(|level| Table::new(&self.ratios_of(level, &sums))).collect();
-        self.smooth(&Image::from_fn(size, |x, y| self.gather_at(x, y, &sums, &ratios)))
+        let shares = self.shares(&ratios);
+        self.smooth(&Image::from_fn(size, |x, y| self.gather_at(x, y, &sums, &shares)))
     }
 
     /// Light averaged over half of each pixel's width, over those that are lit.
@@ -152,7 +153,10 @@ impl Tables {
         let [fine, coarse] = [level - 1, level].map(|level| sums.held(self.box_at(x, y, RADII[level])));
         let [a, b] = [level - 1, level].map(|level| (f64::from(RADII[level]) + 0.5).powi(2));
         let limit = 1.0 + (b - a) / (b + a);
-        let ratio = if coarse.area <= fine.area {
+        let is_dark = |held: Held| held.flux == [0.0; 3];
+        let ratio = if is_dark(coarse) {
+            0.0
+        } else if coarse.area <= fine.area {
             1.0
         } else if fine.area <= 0.0 {
             0.0
@@ -167,7 +171,33 @@ impl Tables {
         whole
     }
 
-    fn gather_at(&self, x: u32, y: u32, sums: &Sums, ratios: &[Table]) -> Gathered {
+    /// How far each width's test lets light be mixed with it, at every second pixel of every second row:
+    /// of radii 1 to 64, from 0 to 1, none larger than the one before.
+    fn shares(&self, ratios: &[Table]) -> Image<[f64; 7]> {
+        let size = self.areas.size().map(|side| side.div_ceil(2));
+        Image::from_fn(size, |x, y| {
+            let mut share = 1.0_f64;
+            std::array::from_fn(|index| {
+                if share > 0.0 {
+                    let ratio = self.pooled(2 * x, 2 * y, index + 1, &ratios[index]);
+                    share = share.min(((1.0 + SOFT - ratio) / (2.0 * SOFT)).clamp(0.0, 1.0));
+                }
+                share
+            })
+        })
+    }
+
+    /// The shares that hold for a pixel: those of its cell, or where the cell's pixel is on another face, of
+    /// the next one.
+    fn shares_at(&self, x: u32, y: u32, shares: &Image<[f64; 7]>) -> [f64; 7] {
+        let [left, right, down, up] = self.extents.at(x, y);
+        let cell = |place: u32, before: u8, after: u8| {
+            place / 2 + u32::from(place % 2 == 1 && before == 0 && after > 0)
+        };
+        shares.at(cell(x, left, right), cell(y, down, up))
+    }
+
+    fn gather_at(&self, x: u32, y: u32, sums: &Sums, shares: &Image<[f64; 7]>) -> Gathered {
         if !self.lit.at(x, y) {
             return Gathered::default();
         }
@@ -177,17 +207,14 @@ impl Tables {
         };
         let mut found = Gathered { light: light(0).unwrap_or_default(), radius: 0.0 };
         let mut is_found = light(0).is_some();
-        let mut share = 1.0_f64;
-        for level in 1..RADII.len() {
-            let ratio = self.pooled(x, y, level, &ratios[level - 1]);
-            share = share.min(((1.0 + SOFT - ratio) / (2.0 * SOFT)).clamp(0.0, 1.0));
+        for (share, radius) in self.shares_at(x, y, shares).into_iter().zip(&RADII[1..]) {
             if share == 0.0 {
                 break;
             }
-            let (wider, radius) = (light(RADII[level]), f64::from(RADII[level]));
+            let wider = light(*radius);
             // Where there is nothing, what is wider is all there is.
             let part = if is_found { share } else { 1.0 };
-            found.radius += part * (radius - found.radius);
+            found.radius += part * (f64::from(*radius) - found.radius);
             for (light, wider) in found.light.iter_mut().zip(wider.unwrap_or_default()) {
                 *light += part * (wider - *light);
             }
@@ -198,16 +225,18 @@ impl Tables {
         {
             found = Gathered { light, radius: radius.into() };
         }
+        // Nothing is lit so far from photons.
+        if found.light == [0.0; 3] && sums.held(self.box_at(x, y, RADII[7])).flux == [0.0; 3] {
+            found.radius = 0.0;
+        }
         found
     }
 
-    /// The mean ratio of a level around a pixel.
+    /// The mean ratio of a level around a pixel of an even column and row.
     fn pooled(&self, x: u32, y: u32, level: usize, ratios: &Table) -> f64 {
         let step = step_of(level);
         let Inside { lo, hi } = self.box_at(x, y, POOL * RADII[level]);
         let places = Inside { lo: lo.map(|first| first.div_ceil(step)), hi: hi / step };
-        let own = UVec2::new(x, y) / step;
-        let places = if places.lo.cmple(places.hi).all() { places } else { Inside { lo: own, hi: own } };
         #[expect(clippy::cast_precision_loss, reason = "less than 2^32")]
         let mean = ratios.count(places) as f64 * RATIO_UNIT / places.area() as f64;
         mean
