@@ -251,6 +251,7 @@ impl IrradiancePipeline {
     /// Forgets the light, and keeps the photons that were counted.
     pub fn clear_light(&mut self) {
         self.spreads.clear();
+        self.gathered = false;
     }
 
     /// Searches radii again for the next light, though they are known.

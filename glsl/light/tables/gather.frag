@@ -3,18 +3,15 @@
 // Towards the camera; w: the surface's number from 1, negative for mirrors and glass, 0 where nothing is
 // seen.
 uniform sampler2D normal;
-// Sums of flux, and of areas.
-uniform usampler2DArray flux_table;
+// Sums of areas.
 uniform usampler2DArray area_table;
 // Shares of radii 1, 2, 4 and 8, and of 16, 32 and 64, at every second pixel of every second row.
 uniform sampler2D narrow_shares;
 uniform sampler2D wide_shares;
-// Steps of one unit of power over one of area.
-uniform float steps_of_light;
 
 // Light: red, green and blue, in units of power over those of area; a: radius in pixels.
 layout(location = 0) out vec4 light_and_radius;
-// The same light in whole steps; a: 1 where the pixel is lit.
+// The same light in whole steps; a: 1 where the pixel is lit, and 2^16 more where it is too bright for them.
 layout(location = 1) out uvec4 steps;
 
 // a: whether there is any area.
@@ -68,5 +65,7 @@ void main()
         radius = 0.0;
     }
     light_and_radius = vec4(light.rgb, radius);
-    steps = uvec4(min(light.rgb * steps_of_light, float(MOST_STEPS)) + 0.5, 1u);
+    vec3 exact = light.rgb * steps_of_light();
+    bool fits = all(lessThanEqual(exact, vec3(MOST_STEPS)));
+    steps = fits ? uvec4(exact + 0.5, 1u) : uvec4(uvec3(0u), 0x10001u);
 }

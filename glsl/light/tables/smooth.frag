@@ -3,10 +3,8 @@
 
 // Light: red, green and blue, in units of power over those of area; a: radius in pixels.
 uniform sampler2D gathered;
-// Sums of the same in whole steps, and of lit pixels.
+// Sums of the same in whole steps, and of lit pixels, with 2^16 more for one that is too bright for steps.
 uniform usampler2DArray light_table;
-// Steps of one unit of power over one of area.
-uniform float steps_of_light;
 // The unit of power.
 uniform float flux_unit;
 
@@ -20,7 +18,9 @@ void main()
     int radius = min(int(0.5 * light.a), MOST_SMOOTH);
     if (radius > 0) {
         uvec4 sum = sum_of(light_table, box_at(pixel, ivec4(texelFetch(extents, pixel, 0)), radius));
-        light.rgb = vec3(sum.rgb) / (steps_of_light * float(sum.a));
+        if (sum.a < 0x10000u) {
+            light.rgb = vec3(sum.rgb) / (steps_of_light() * float(sum.a));
+        }
     }
     irradiance_and_radius = vec4(light.rgb * (flux_unit / area_unit()), light.a);
 }

@@ -19,7 +19,7 @@ const BENT: &str = "extents on curves";
 /// Sides of the blocks whose logarithms one texel sums.
 const BLOCK: u32 = 32;
 /// Units of the pixels' geometric mean area, or about: 2^13 of a power of two.
-pub(super) const MEAN_AREA: f64 = 8192.0;
+pub(super) const MEAN_AREA: u32 = 8192;
 /// The longest extent is 2 to this.
 const DOUBLINGS: u32 = 7;
 

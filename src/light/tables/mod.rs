@@ -45,8 +45,8 @@ const REACH: u32 = 64 + MOST_SMOOTH + 2;
 const MOST_SMOOTH: u32 = 16;
 /// As many steps of light a pixel as such a box can sum in 32 bits.
 const MOST_STEPS: u32 = u32::MAX / ((2 * MOST_SMOOTH + 1) * (2 * MOST_SMOOTH + 1));
-/// How many times the mean light that is; what is brighter is not smoothed with what is darker.
-const BRIGHTEST: f64 = 64.0;
+/// Light up to so many times what the picture's photons give its pixels in the mean is smoothed.
+const BRIGHTEST: u32 = 1024;
 
 /// Boxes of pixels and sums over them.
 const BOX: (&str, &str) = glsl!("light/tables/box.glsl");
@@ -214,15 +214,13 @@ impl TablesStage {
             .read("fine_tests", self.maps.ratio_tables[0].texture())
             .read("coarse_tests", self.maps.ratio_tables[1].texture());
         fill_lit(pool, flux_table, size, &mut self.maps.shares)?;
-        let steps = self.steps_of_light(flux);
         let [narrow, wide] = self.maps.shares.textures() else { unreachable!("two attachments") };
         let gather = Pass::new(GATHER, &self.gather)
             .read("normal", surfaces.normal())
             .read("extents", self.faces.extents())
             .read("area_table", self.faces.table())
             .read("narrow_shares", narrow)
-            .read("wide_shares", wide)
-            .set("steps_of_light", steps);
+            .read("wide_shares", wide);
         fill_lit(gather, flux_table, size, &mut self.maps.gathered)?;
         self.maps.light_table.build(&self.four, &self.maps.gathered.textures()[1])?;
         let smooth = Pass::new(SMOOTH, &self.smooth)
@@ -230,7 +228,6 @@ impl TablesStage {
             .read("extents", self.faces.extents())
             .read("light_table", self.maps.light_table.texture())
             .read("log_areas", self.faces.log_areas())
-            .set("steps_of_light", steps)
             .set("flux_unit", units.power);
         fill_lit(smooth, flux_table, size, self.maps.irradiance.target())?;
         Pass::new(WIDTHS, &self.widths)
@@ -238,15 +235,6 @@ impl TablesStage {
             .fill(self.maps.radii.target())?;
         self.gl.check("gathering light from tables")?;
         Ok(&self.maps.irradiance)
-    }
-
-    /// Steps of one unit of power over one of area: the mean light is a 64th of the most, or less.
-    #[expect(clippy::cast_possible_truncation, reason = "within the range of f32")]
-    fn steps_of_light(&self, flux: &FluxMap) -> f32 {
-        let brightest = flux.totals().power.into_iter().fold(0.0, f64::max);
-        let pixels = self.maps.irradiance.size().as_dvec2().element_product();
-        let mean = brightest / f64::from(flux.units().power) / (pixels * face_maps::MEAN_AREA);
-        (f64::from(MOST_STEPS) / (BRIGHTEST * mean.max(1e-20))) as f32
     }
 
     /// How wide each pixel's light was gathered, in pixels; 0 where nothing is lit.
@@ -301,9 +289,16 @@ fn sources() -> [ShaderSource; 7] {
         lit(of_light(POOL, &[TextureFormat::Rgba32Float; 2]), 2).file(glsl!("light/tables/pool.frag")),
         lit(of_light(GATHER, &[TextureFormat::Rgba32Float, TextureFormat::Rgba32Uint]), 1)
             .define("MOST_STEPS", MOST_STEPS)
+            .define("BRIGHTEST", BRIGHTEST)
+            .define("MEAN_AREA", face_maps::MEAN_AREA)
+            .file(glsl!("light/tables/steps.glsl"))
             .file(glsl!("light/tables/gather.frag")),
         lit(of_light(SMOOTH, &[TextureFormat::Rgba32Float]), 1)
+            .define("MOST_STEPS", MOST_STEPS)
+            .define("BRIGHTEST", BRIGHTEST)
+            .define("MEAN_AREA", face_maps::MEAN_AREA)
             .define("MOST_SMOOTH", MOST_SMOOTH)
+            .file(glsl!("light/tables/steps.glsl"))
             .file(glsl!("light/tables/area_unit.glsl"))
             .file(glsl!("light/tables/smooth.frag")),
         ShaderSource::new(WIDTHS).targets([TextureFormat::R32Uint]).file(glsl!("light/tables/widths.frag")),

@@ -24,6 +24,10 @@ const SOFT: f64 = 0.4;
 const POOL: u32 = 2;
 /// The widest box that light is smoothed over, by its radius in pixels.
 const MOST_SMOOTH: u32 = 16;
+/// Light up to so many times what the picture's photons give its pixels in the mean is smoothed.
+const BRIGHTEST: f64 = 1024.0;
+/// Units of the usual area of a pixel.
+const MEAN_AREA: f64 = 8192.0;
 /// Ratios are summed in whole numbers of this.
 const RATIO_UNIT: f64 = 1.0 / 8192.0;
 
@@ -112,9 +116,15 @@ impl Tables {
         self.smooth(&Image::from_fn(size, |x, y| self.gather_at(x, y, &sums, &shares)))
     }
 
-    /// Light averaged over half of each pixel's width, over those that are lit.
+    /// Light averaged over half of each pixel's width, over those that are lit, unless one is too bright.
     #[must_use]
     pub fn smooth(&self, gathered: &Image<Gathered>) -> Image<Gathered> {
+        let all =
+            |channel: usize| self.flux.values().iter().map(|flux| u64::from(flux[channel])).sum::<u64>();
+        let most = [0, 1, 2].map(all).into_iter().fold(0, u64::max);
+        let pixels = f64::from(self.flux.size().element_product());
+        #[expect(clippy::cast_precision_loss, reason = "less than 2^53")]
+        let brightest = BRIGHTEST * most as f64 / (pixels * MEAN_AREA);
         Image::from_fn(gathered.size(), |x, y| {
             let home = gathered.at(x, y);
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most 64")]
@@ -123,16 +133,17 @@ impl Tables {
                 return home;
             }
             let Inside { lo, hi } = self.box_at(x, y, radius);
-            let (mut sum, mut count) = ([0.0; 3], 0.0);
+            let (mut sum, mut count, mut is_too_bright) = ([0.0; 3], 0.0, false);
             for (x, y) in (lo.y..=hi.y).flat_map(|y| (lo.x..=hi.x).map(move |x| (x, y))) {
                 if self.lit.at(x, y) {
                     count += 1.0;
                     for (sum, light) in sum.iter_mut().zip(gathered.at(x, y).light) {
                         *sum += light;
+                        is_too_bright |= light > brightest;
                     }
                 }
             }
-            Gathered { light: sum.map(|sum| sum / count), ..home }
+            if is_too_bright { home } else { Gathered { light: sum.map(|sum| sum / count), ..home } }
         })
     }
 

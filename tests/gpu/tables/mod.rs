@@ -1,5 +1,8 @@
 //! Light from tables against its definition: flux in whole units, areas, extents, tests of noise, light.
 
+mod skips;
+mod splat_faults;
+
 use glam::{UVec2, Vec3};
 use varikernel::image::Image;
 use varikernel::light::TablesStage;
