@@ -1,5 +1,6 @@
 //! Light from tables against its definition: flux in whole units, areas, extents, tests of noise, light.
 
+mod odd_input;
 mod skips;
 mod splat_faults;
 
