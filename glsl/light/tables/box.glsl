@@ -1,5 +1,9 @@
 // Boxes of pixels on one face, and sums of tables over them.
 
+// Columns and rows of the map, in pixels.
+uniform ivec2 map_size;
+// Sums of flux: red, green, blue and squares of power.
+uniform usampler2DArray flux_table;
 // How many pixels the face goes on to the left, to the right, down and up.
 uniform usampler2D extents;
 

@@ -5,7 +5,7 @@
 uniform sampler2D normal;
 // Sums of areas.
 uniform usampler2DArray area_table;
-// Shares of radii 1, 2, 4 and 8, and of 16, 32 and 64, at every second pixel of every second row.
+// Shares of radii 2, 4, 8 and 16, and of 32 and 64, at every second pixel of every second row.
 uniform sampler2D narrow_shares;
 uniform sampler2D wide_shares;
 
@@ -39,19 +39,24 @@ void main()
     }
     ivec4 extent = ivec4(texelFetch(extents, pixel, 0));
     ivec2 cell = cell_of(pixel, extent);
-    vec4 shares[2] = vec4[2](texelFetch(narrow_shares, cell, 0), texelFetch(wide_shares, cell, 0));
+    vec4 narrow = texelFetch(narrow_shares, cell, 0);
+    vec4 wide = texelFetch(wide_shares, cell, 0);
+    // That of radius 1 is pooled over so narrow a box that each pixel has its own.
+    ivec4 around = box_at(pixel, extent, POOL);
+    float first = share_of(sum_of(fine_tests, around).r, around.zw - around.xy + 1, share_of_noise());
+    float shares[7] = float[7](first, narrow.x, narrow.y, narrow.z, narrow.w, wide.x, wide.y);
     // The widest radius that all tests up to it allow, then mixed with the next ones as far as they go.
     int known = 0;
     int level = 0;
-    while (level < 7 && shares[level >> 2][level & 3] == 1.0) {
+    while (level < 7 && min(first, shares[level]) == 1.0) {
         known = 1 << level;
         ++level;
     }
     vec4 light = light_in(box_at(pixel, extent, known));
     float radius = float(known);
-    for (; level < 7 && shares[level >> 2][level & 3] > 0.0; ++level) {
+    for (; level < 7 && min(first, shares[level]) > 0.0; ++level) {
         // Where there is nothing, what is wider is all there is.
-        float part = light.a == 0.0 ? 1.0 : shares[level >> 2][level & 3];
+        float part = light.a == 0.0 ? 1.0 : min(first, shares[level]);
         int wider = 1 << level;
         light = mix(light, light_in(box_at(pixel, extent, wider)), part);
         radius = mix(radius, float(wider), part);

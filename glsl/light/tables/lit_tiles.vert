@@ -1,11 +1,7 @@
 // Two triangles for each tile that a photon is in reach of, nothing for the others.
 
-// Columns and rows of the map, in pixels.
-uniform ivec2 map_size;
 // Tiles of a row.
 uniform int tile_columns;
-// Sums of flux.
-uniform usampler2DArray flux_table;
 
 // Places of the corners of two triangles: lower left, lower right, upper left, upper right.
 const int CORNERS[6] = int[6](0, 1, 2, 2, 1, 3);

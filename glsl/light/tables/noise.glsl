@@ -1,7 +1,6 @@
 // The test of noise: whether a box twice as wide has the same light, but for noise.
 
-// Sums of flux, and of areas.
-uniform usampler2DArray flux_table;
+// Sums of areas.
 uniform usampler2DArray area_table;
 // The unit of squares over the square of that of power.
 uniform float square_unit;

@@ -1,10 +1,5 @@
 // Light in whole steps, so that tables can sum it.
 
-// Sums of flux.
-uniform usampler2DArray flux_table;
-// Columns and rows of the map, in pixels.
-uniform ivec2 map_size;
-
 // Steps of one unit of power over one of area: of what the picture's photons give its pixels in the mean, BRIGHTEST
 // times as much are MOST_STEPS.
 float steps_of_light()

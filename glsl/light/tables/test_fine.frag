@@ -5,19 +5,26 @@ uniform usampler2D points;
 // Area of each pixel; 0 where none counts.
 uniform usampler2D areas;
 
-// Ratios in 2^-13, of radii 1, 2, 4, and nothing.
+// Ratios in 2^-13, of radii 1, 2 and 4; a: the square of the difference at radius 2 over what noise would make of
+// it, weighed by an eighth of the pixel's squares of power, so that the picture's sum fits.
 layout(location = 0) out uvec4 ratios;
 
 void main()
 {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     ivec4 extent = ivec4(texelFetch(extents, pixel, 0));
-    Held fine = held_by(texelFetch(points, pixel, 0), texelFetch(areas, pixel, 0).r);
-    ratios = uvec4(0u);
+    uvec4 own = texelFetch(points, pixel, 0);
+    Held fine = held_by(own, texelFetch(areas, pixel, 0).r);
+    ratios = uvec4(0u, 0u, 0u, own.a >> 3);
     int radius = 1;
     for (int i = 0; i < 3; ++i) {
         Held coarse = held_in(box_at(pixel, extent, radius));
-        ratios[i] = in_units(ratio(fine, coarse, threshold(float(radius / 2), float(radius))));
+        float limit = threshold(float(radius / 2), float(radius));
+        float of_noise = ratio(fine, coarse, limit);
+        ratios[i] = in_units(of_noise);
+        if (radius == 2 && all(greaterThanEqual(extent, ivec4(2)))) {
+            ratios.a = uint(float(ratios.a) * of_noise * limit + 0.5);
+        }
         fine = coarse;
         radius *= 2;
     }

@@ -50,6 +50,8 @@ const BRIGHTEST: u32 = 1024;
 
 /// Boxes of pixels and sums over them.
 const BOX: (&str, &str) = glsl!("light/tables/box.glsl");
+/// Shares of widths.
+const POOLED: (&str, &str) = glsl!("light/tables/pooled.glsl");
 
 /// Gathers light from tables into maps of one size.
 #[derive(Debug)]
@@ -219,6 +221,7 @@ impl TablesStage {
             .read("normal", surfaces.normal())
             .read("extents", self.faces.extents())
             .read("area_table", self.faces.table())
+            .read("fine_tests", self.maps.ratio_tables[0].texture())
             .read("narrow_shares", narrow)
             .read("wide_shares", wide);
         fill_lit(gather, flux_table, size, &mut self.maps.gathered)?;
@@ -286,12 +289,15 @@ fn sources() -> [ShaderSource; 7] {
         four(POINTS).file(glsl!("light/tables/points.frag")),
         test(TEST_FINE, 1).file(glsl!("light/tables/test_fine.frag")),
         test(TEST_COARSE, 2).file(glsl!("light/tables/test_coarse.frag")),
-        lit(of_light(POOL, &[TextureFormat::Rgba32Float; 2]), 2).file(glsl!("light/tables/pool.frag")),
+        lit(of_light(POOL, &[TextureFormat::Rgba32Float; 2]), 2)
+            .file(POOLED)
+            .file(glsl!("light/tables/pool.frag")),
         lit(of_light(GATHER, &[TextureFormat::Rgba32Float, TextureFormat::Rgba32Uint]), 1)
             .define("MOST_STEPS", MOST_STEPS)
             .define("BRIGHTEST", BRIGHTEST)
             .define("MEAN_AREA", face_maps::MEAN_AREA)
             .file(glsl!("light/tables/steps.glsl"))
+            .file(POOLED)
             .file(glsl!("light/tables/gather.frag")),
         lit(of_light(SMOOTH, &[TextureFormat::Rgba32Float]), 1)
             .define("MOST_STEPS", MOST_STEPS)

@@ -20,6 +20,8 @@ pub const RADII: [u32; 8] = [0, 1, 2, 4, 8, 16, 32, 64];
 const MOST: f64 = 6.0;
 /// Ratios so far from 1 decide all.
 const SOFT: f64 = 0.4;
+/// The least that the picture's noise counts as, of that of photons that fall by chance.
+const NOISE_FLOOR: f64 = 0.75;
 /// Tests are pooled over boxes so many times as wide.
 const POOL: u32 = 2;
 /// The widest box that light is smoothed over, by its radius in pixels.
@@ -112,7 +114,7 @@ impl Tables {
         let sums = Sums::of(self);
         let ratios: Vec<Table> =
             (1..RADII.len()).map(|level| Table::new(&self.ratios_of(level, &sums))).collect();
-        let shares = self.shares(&ratios);
+        let shares = self.shares(&ratios, self.share_of_noise(&sums));
         self.smooth(&Image::from_fn(size, |x, y| self.gather_at(x, y, &sums, &shares)))
     }
 
@@ -161,51 +163,67 @@ impl Tables {
     }
 
     fn ratio(&self, x: u32, y: u32, level: usize, sums: &Sums) -> u32 {
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most 6 in 2^-13")]
+        let whole = (self.difference(x, y, level, sums) / threshold(level) / RATIO_UNIT + 0.5) as u32;
+        whole
+    }
+
+    /// The square of the difference between a level and the one before over what noise alone would make of
+    /// it; its threshold where the wider box is no wider.
+    fn difference(&self, x: u32, y: u32, level: usize, sums: &Sums) -> f64 {
         let [fine, coarse] = [level - 1, level].map(|level| sums.held(self.box_at(x, y, RADII[level])));
-        let [a, b] = [level - 1, level].map(|level| (f64::from(RADII[level]) + 0.5).powi(2));
-        let limit = 1.0 + (b - a) / (b + a);
-        let is_dark = |held: Held| held.flux == [0.0; 3];
-        let ratio = if is_dark(coarse) {
+        if coarse.flux == [0.0; 3] {
             0.0
         } else if coarse.area <= fine.area {
-            1.0
+            threshold(level)
         } else if fine.area <= 0.0 {
             0.0
         } else {
             let mean = |held: Held| held.flux.iter().sum::<f64>() / held.area;
             let square = self.square_unit * (coarse.squares + self.usual_square);
             let variance = square / coarse.area * (1.0 / fine.area - 1.0 / coarse.area);
-            ((mean(coarse) - mean(fine)).powi(2) / variance).min(MOST) / limit
-        };
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most 6 in 2^-13")]
-        let whole = (ratio / RATIO_UNIT + 0.5) as u32;
-        whole
+            ((mean(coarse) - mean(fine)).powi(2) / variance).min(MOST)
+        }
     }
 
-    /// How far each width's test lets light be mixed with it, at every second pixel of every second row:
-    /// of radii 1 to 64, from 0 to 1, none larger than the one before.
-    fn shares(&self, ratios: &[Table]) -> Image<[f64; 7]> {
+    /// The picture's noise over that of photons that fall by chance, from what differs between radii 1 and 2,
+    /// weighed by the squares of power of each pixel.
+    fn share_of_noise(&self, sums: &Sums) -> f64 {
+        let (mut found, mut weights) = (0.0, 0.0);
+        for (x, y) in (0..self.flux.size().x).flat_map(|x| (0..self.flux.size().y).map(move |y| (x, y))) {
+            let weight = f64::from(self.flux.at(x, y)[3] / 8);
+            let has_all = self.extents.at(x, y).into_iter().all(|extent| extent >= 2);
+            found += weight * if has_all { self.difference(x, y, 2, sums) } else { 1.0 };
+            weights += weight;
+        }
+        if weights > 0.0 { (found / weights).clamp(NOISE_FLOOR, 1.0) } else { 1.0 }
+    }
+
+    /// How far each width's test lets light be mixed with it: of radii 1 to 64, from 0 to 1, none larger than
+    /// the one before. That of radius 1 at each pixel; the others, pooled over wider boxes, at every second
+    /// pixel of every second row.
+    fn shares(&self, ratios: &[Table], noise: f64) -> Image<[f64; 7]> {
+        let share = |x, y, level| {
+            let ratio = self.pooled(x, y, level, &ratios[level - 1]) / noise;
+            ((1.0 + SOFT - ratio) / (2.0 * SOFT)).clamp(0.0, 1.0)
+        };
         let size = self.areas.size().map(|side| side.div_ceil(2));
-        Image::from_fn(size, |x, y| {
-            let mut share = 1.0_f64;
+        let cells = Image::from_fn(size, |x, y| -> [f64; 6] {
+            std::array::from_fn(|index| share(2 * x, 2 * y, index + 2))
+        });
+        Image::from_fn(self.areas.size(), |x, y| {
+            let [left, right, down, up] = self.extents.at(x, y);
+            // The cell's pixel, or where that is on another face, the next one.
+            let cell = |place: u32, before: u8, after: u8| {
+                place / 2 + u32::from(place % 2 == 1 && before == 0 && after > 0)
+            };
+            let wider = cells.at(cell(x, left, right), cell(y, down, up));
+            let mut least = share(x, y, 1);
             std::array::from_fn(|index| {
-                if share > 0.0 {
-                    let ratio = self.pooled(2 * x, 2 * y, index + 1, &ratios[index]);
-                    share = share.min(((1.0 + SOFT - ratio) / (2.0 * SOFT)).clamp(0.0, 1.0));
-                }
-                share
+                least = if index == 0 { least } else { least.min(wider[index - 1]) };
+                least
             })
         })
-    }
-
-    /// The shares that hold for a pixel: those of its cell, or where the cell's pixel is on another face, of
-    /// the next one.
-    fn shares_at(&self, x: u32, y: u32, shares: &Image<[f64; 7]>) -> [f64; 7] {
-        let [left, right, down, up] = self.extents.at(x, y);
-        let cell = |place: u32, before: u8, after: u8| {
-            place / 2 + u32::from(place % 2 == 1 && before == 0 && after > 0)
-        };
-        shares.at(cell(x, left, right), cell(y, down, up))
     }
 
     fn gather_at(&self, x: u32, y: u32, sums: &Sums, shares: &Image<[f64; 7]>) -> Gathered {
@@ -218,7 +236,7 @@ impl Tables {
         };
         let mut found = Gathered { light: light(0).unwrap_or_default(), radius: 0.0 };
         let mut is_found = light(0).is_some();
-        for (share, radius) in self.shares_at(x, y, shares).into_iter().zip(&RADII[1..]) {
+        for (share, radius) in shares.at(x, y).into_iter().zip(&RADII[1..]) {
             if share == 0.0 {
                 break;
             }
@@ -243,7 +261,7 @@ impl Tables {
         found
     }
 
-    /// The mean ratio of a level around a pixel of an even column and row.
+    /// The mean ratio of a level around a pixel, of an even column and row where tests are at every second.
     fn pooled(&self, x: u32, y: u32, level: usize, ratios: &Table) -> f64 {
         let step = step_of(level);
         let Inside { lo, hi } = self.box_at(x, y, POOL * RADII[level]);
@@ -278,6 +296,13 @@ impl Sums {
             [0, 1, 2, 3].map(|index: usize| self.flux[index].count(inside) as f64);
         Held { flux: [red, green, blue], squares, area: self.area.count(inside) as f64 }
     }
+}
+
+/// What a level's test is held against: 1 by noise, and the bias of the wider box as far as it is known from
+/// the difference.
+fn threshold(level: usize) -> f64 {
+    let [a, b] = [level - 1, level].map(|level| (f64::from(RADII[level]) + 0.5).powi(2));
+    1.0 + (b - a) / (b + a)
 }
 
 /// Pixels from one test to the next.

@@ -110,3 +110,36 @@ fn what_is_not_lit_is_dark_and_nothing_is_no_number() {
     let empty = Tables { extents: tables(|_, _| 0).extents, ..given };
     assert!(empty.gather().values().iter().all(|pixel| pixel.light.iter().all(|&light| light == 0.0)));
 }
+
+#[test]
+fn noise_that_is_less_than_by_chance_is_known_from_narrow_boxes() {
+    let share = |photons: &dyn Fn(u32, u32) -> u32| {
+        let tables = tables(photons);
+        tables.share_of_noise(&super::Sums::of(&tables))
+    };
+    // One of eight at 64 tries: its variance is 7/8 of its mean, and sixteen halves have a half, which is less
+    // than the least.
+    let seldom = |x: u32, y: u32| {
+        let tries = (0..192).step_by(3).map(|try_of| {
+            let coins = (0..3).map(|coin| coin_at(x, y, try_of + coin));
+            u32::from(coins.into_iter().all(|heads| heads))
+        });
+        tries.sum::<u32>()
+    };
+    assert!((share(&seldom) - 0.875).abs() < 0.08, "{}", share(&seldom));
+    assert!((share(&scattered(1)) - 0.75).abs() < 1e-12);
+    assert!((share(&|_, _| 80) - 0.75).abs() < 1e-12);
+    // Light that changes at each pixel is not taken for noise.
+    assert!((share(&|x, y| 200 * ((x + y) % 2) + 1) - 1.0).abs() < 1e-12);
+    // Nothing is known where there is nothing.
+    assert!((share(&|_, _| 0) - 1.0).abs() < 1e-12);
+}
+
+/// Whether the `number`-th coin of a place shows heads.
+fn coin_at(x: u32, y: u32, number: u64) -> bool {
+    let mut state = number << 40 ^ u64::from(x) << 20 ^ u64::from(y);
+    for _ in 0..3 {
+        state = (state ^ state >> 31).wrapping_mul(0xBF58_476D_1CE4_E5B9).wrapping_add(0x9E37_79B9_7F4A_7C15);
+    }
+    state >> 63 == 1
+}
