@@ -3,7 +3,7 @@
 
 use glam::UVec2;
 
-use super::summed_table::{Channels, ScanPrograms, SummedTable};
+use super::summed_table::{Channels, RowSums, ScanPrograms, SummedTable};
 use crate::error::Result;
 use crate::gl::{
     Gl, Pass, Program, ShaderSource, Target, TargetShape, Targets, Texture, TextureFormat, TextureShape, glsl,
@@ -38,6 +38,7 @@ struct Maps {
     log_areas: Vec<Target>,
     /// Units of area, and what flux is weighed with.
     areas: Target,
+    rows: RowSums,
     table: SummedTable,
     /// Two that take turns.
     extents: [Target; 2],
@@ -49,6 +50,7 @@ impl Maps {
         Self {
             log_areas: fold_sizes(size).map(|_| targets.take()).collect(),
             areas: targets.take(),
+            rows: RowSums::take(size, targets),
             table: SummedTable::take(size, targets),
             extents: [targets.take(), targets.take()],
         }
@@ -73,6 +75,7 @@ impl FaceMaps {
             TextureShape::new(AREAS, TextureFormat::R32Uint, size),
             TextureShape::new("weights of areas", TextureFormat::R32Float, size),
         ]);
+        shapes.extend(RowSums::shapes(Channels::One, size));
         shapes.extend(SummedTable::shapes(Channels::One, size));
         shapes.extend([extents(), extents()]);
         shapes
@@ -117,7 +120,7 @@ impl FaceMaps {
             .read("links", maps.extents[0].texture())
             .set("map_size", map_size)
             .fill(&mut maps.areas)?;
-        maps.table.build(one, maps.areas.texture())?;
+        maps.table.build(one, &mut maps.rows, maps.areas.texture())?;
         let [extents, spare] = &mut maps.extents;
         for doubling in 0..DOUBLINGS {
             Pass::new(LONGER, longer)

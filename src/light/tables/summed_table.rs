@@ -6,7 +6,8 @@
 //! - The table is layered as it is drawn: entry (x, y) is in layer y mod 8 at (x, y / 8). Readers fetch it
 //!   there (`light/tables/box.glsl`), since unpacking would write it once more.
 //! - Fetches: each texel twice and its sum along the row twice, 1/7 more for the sums of runs.
-//! - Memory: the table and the sums along rows, 2/7 of a table for the sums of runs.
+//! - Memory: the table and 1/7 for the sums of runs; as much once more for the sums along rows, which tables
+//!   of one size share.
 //!
 //! The tables of the radius search pack four columns in a texel; with four numbers there is nothing to pack.
 
@@ -71,11 +72,26 @@ enum Axis {
     Columns,
 }
 
-/// A table, and what lies between it and what is summed.
+/// A table.
 #[derive(Debug)]
 pub(super) struct SummedTable {
-    rows: Lines,
     columns: Lines,
+}
+
+/// Sums along rows: what lies between a table and what it sums, for all tables of one size that are built one
+/// after the other.
+#[derive(Debug)]
+pub(super) struct RowSums(Lines);
+
+impl RowSums {
+    /// What they allocate, in the order in which [`take`](Self::take) takes it.
+    pub(super) fn shapes(channels: Channels, size: UVec2) -> Vec<TargetShape> {
+        Lines::shapes(channels, Axis::Rows, size)
+    }
+
+    pub(super) fn take(size: UVec2, targets: &mut Targets) -> Self {
+        Self(Lines::take(Axis::Rows, size, targets))
+    }
 }
 
 /// Sums along one axis, level by level: of runs, and of each element with all before it.
@@ -96,21 +112,23 @@ struct Level {
 impl SummedTable {
     /// What it allocates, in the order in which [`take`](Self::take) takes it.
     pub(super) fn shapes(channels: Channels, size: UVec2) -> Vec<TargetShape> {
-        [Axis::Rows, Axis::Columns].into_iter().flat_map(|axis| Lines::shapes(channels, axis, size)).collect()
+        Lines::shapes(channels, Axis::Columns, size)
     }
 
     pub(super) fn take(size: UVec2, targets: &mut Targets) -> Self {
-        Self {
-            rows: Lines::take(Axis::Rows, size, targets),
-            columns: Lines::take(Axis::Columns, size, targets),
-        }
+        Self { columns: Lines::take(Axis::Columns, size, targets) }
     }
 
-    /// Sums all of `texels`.
-    pub(super) fn build(&mut self, programs: &ScanPrograms, texels: &Texture) -> Result<()> {
+    /// Sums all of `texels`, by way of `rows` of its size and channels.
+    pub(super) fn build(
+        &mut self,
+        programs: &ScanPrograms,
+        RowSums(rows): &mut RowSums,
+        texels: &Texture,
+    ) -> Result<()> {
         let nothing = &programs.nothing;
-        self.rows.scan(&programs.rows, &programs.rows, texels, nothing)?;
-        self.columns.scan(&programs.first_columns, &programs.columns, self.rows.sums(), nothing)
+        rows.scan(&programs.rows, &programs.rows, texels, nothing)?;
+        self.columns.scan(&programs.first_columns, &programs.columns, rows.sums(), nothing)
     }
 
     /// The table, layered by rows.
