@@ -4,12 +4,14 @@ mod density;
 mod gather;
 mod irradiance;
 mod kernel_pass;
+mod sources;
 mod splat;
 mod spread;
 mod tables;
 
 pub use density::DensityStage;
 pub use gather::GatherStage;
-pub use irradiance::{IrradiancePipeline, density_source, shader_sources, spread_sources, tables_sources};
+pub use irradiance::IrradiancePipeline;
+pub use sources::{density_source, shader_sources, spread_sources, tables_sources};
 pub use splat::SplatStage;
 pub use tables::TablesStage;

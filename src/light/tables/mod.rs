@@ -134,7 +134,7 @@ impl TablesStage {
     pub(super) fn shapes(size: UVec2) -> Vec<TargetShape> {
         let four = |label, size| vec![TextureShape::new(label, TextureFormat::Rgba32Uint, size)];
         let table = |size| SummedTable::shapes(Channels::Four, size);
-        let shares = |label, size| TextureShape::new(label, TextureFormat::Rgba32Float, halved(size));
+        let of_shares = |label| TextureShape::new(label, TextureFormat::Rgba32Float, halved(size));
         let mut shapes = FaceMaps::shapes(size);
         shapes.push(four(POINTS, size));
         shapes
@@ -142,7 +142,7 @@ impl TablesStage {
         shapes.extend(table(size));
         shapes.extend([four(TEST_FINE, size), four(TEST_COARSE, halved(size))]);
         shapes.extend([table(size), table(halved(size))].concat());
-        shapes.push(["narrow shares", "wide shares"].map(|label| shares(label, size)).to_vec());
+        shapes.push(["narrow shares", "wide shares"].map(of_shares).to_vec());
         shapes.push(vec![
             TextureShape::new(GATHER, TextureFormat::Rgba32Float, size),
             TextureShape::new("steps of light", TextureFormat::Rgba32Uint, size),

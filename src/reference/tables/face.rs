@@ -193,7 +193,8 @@ mod tests {
         });
         for (x, y) in (0..SIZE.x).flat_map(|x| (0..SIZE.y).map(move |y| (x, y))) {
             let last = |place: u32, side: u32, count: u32| (side - 1 - place % side).min(count - 1 - place);
-            let expected = [x % 4, last(x, 4, SIZE.x), y % 5, last(y, 5, SIZE.y)].map(|extent| extent as u8);
+            let expected = [x % 4, last(x, 4, SIZE.x), y % 5, last(y, 5, SIZE.y)]
+                .map(|extent| u8::try_from(extent).unwrap());
             assert_eq!(surfaces.at(x, y), expected, "({x}, {y})");
             assert_eq!(facing.at(x, y), expected, "({x}, {y})");
         }

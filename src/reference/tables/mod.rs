@@ -172,7 +172,7 @@ impl Tables {
     /// it; its threshold where the wider box is no wider.
     fn difference(&self, x: u32, y: u32, level: usize, sums: &Sums) -> f64 {
         let [fine, coarse] = [level - 1, level].map(|level| sums.held(self.box_at(x, y, RADII[level])));
-        if coarse.flux == [0.0; 3] {
+        if is_dark(coarse.flux) {
             0.0
         } else if coarse.area <= fine.area {
             threshold(level)
@@ -255,7 +255,7 @@ impl Tables {
             found = Gathered { light, radius: radius.into() };
         }
         // Nothing is lit so far from photons.
-        if found.light == [0.0; 3] && sums.held(self.box_at(x, y, RADII[7])).flux == [0.0; 3] {
+        if is_dark(found.light) && is_dark(sums.held(self.box_at(x, y, RADII[7])).flux) {
             found.radius = 0.0;
         }
         found
@@ -303,6 +303,10 @@ impl Sums {
 fn threshold(level: usize) -> f64 {
     let [a, b] = [level - 1, level].map(|level| (f64::from(RADII[level]) + 0.5).powi(2));
     1.0 + (b - a) / (b + a)
+}
+
+fn is_dark(light: [f64; 3]) -> bool {
+    light.into_iter().all(|channel| channel <= 0.0)
 }
 
 /// Pixels from one test to the next.

@@ -51,7 +51,7 @@ fn photons_of_no_power_and_none_at_all_are_dark() {
     }
     for photons in [&photons[..], &[]] {
         let (_, found) = gathered(&gl, &surfaces, photons);
-        assert!(found.values().iter().all(|pixel| *pixel == [0.0; 4]));
+        assert!(found.values().iter().all(|pixel| pixel.iter().all(|value| *value <= 0.0)));
     }
 }
 
@@ -79,7 +79,7 @@ fn a_scene_of_glass_alone_is_dark() {
     let lost =
         PhotonPoint { position: Vec3::new(0.0, 0.0, -2.0), normal: Vec3::Z, power: Vec3::ONE, surface: 1.0 };
     let (_, found) = gathered(&gl, &surfaces, &[lost; 9]);
-    assert!(found.values().iter().all(|pixel| *pixel == [0.0; 4]));
+    assert!(found.values().iter().all(|pixel| pixel.iter().all(|value| *value <= 0.0)));
 }
 
 #[test]
