@@ -117,7 +117,9 @@ mod tests {
 
     #[test]
     fn students_t_as_in_printed_tables() {
-        for (freedom, printed) in [(1.0, 12.706), (2.0, 4.303), (3.0, 3.182), (4.0, 2.776), (9.0, 2.262), (30.0, 2.042)] {
+        for (freedom, printed) in
+            [(1.0, 12.706), (2.0, 4.303), (3.0, 3.182), (4.0, 2.776), (9.0, 2.262), (30.0, 2.042)]
+        {
             let found = students_t(freedom);
             assert!((found - printed).abs() < 0.0006, "{freedom}: {found}");
         }

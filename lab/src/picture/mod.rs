@@ -120,9 +120,8 @@ impl LightError {
                 sums[1] += relative(square, *wanted);
             }
         }
-        let [square, relative_mse] = [0, 1].map(|measure: usize| {
-            (all[measure] - noise[measure]).max(TOLD * TOLD * noise[measure]) / count
-        });
+        let [square, relative_mse] = [0, 1]
+            .map(|measure: usize| (all[measure] - noise[measure]).max(TOLD * TOLD * noise[measure]) / count);
         Self { rmse: square.sqrt(), relative_mse }
     }
 }

@@ -3,8 +3,8 @@
 use askama::Template as _;
 
 use super::density::DensityRow;
-use super::pareto::Overall;
 use super::page_pictures::PicturesView;
+use super::pareto::Overall;
 use super::radii::LeftOut;
 use super::shape::Shape;
 use super::{Study, Summary, plots, words};

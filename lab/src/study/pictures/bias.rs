@@ -165,15 +165,23 @@ impl Tiles {
         };
         let (inside, edges) = (relative(&|light| light.inside)?, relative(&|light| light.edges)?);
         let light = all(&|light| light.inside)?.1;
-        let tests: Vec<Option<(Welch, f64)>> = (0..self.places.len())
-            .map(|tile| if self.places[tile].len() < LEAST_PIXELS { None } else { all(&|light| light.tiles[tile]) })
-            .collect();
+        let tests: Vec<Option<(Welch, f64)>> =
+            (0..self.places.len())
+                .map(|tile| {
+                    if self.places[tile].len() < LEAST_PIXELS {
+                        None
+                    } else {
+                        all(&|light| light.tiles[tile])
+                    }
+                })
+                .collect();
         let tested = tests.iter().flatten().count();
         let number = |count: usize| u32::try_from(count).unwrap_or(u32::MAX);
         let tests_count = f64::from(number(tested).max(1));
         // The level of each of so many tests together.
         let sure = -((-LEVEL).ln_1p() / tests_count).exp_m1();
-        let biased = |level: f64| number(tests.iter().flatten().filter(|(test, _)| test.differs(level)).count());
+        let biased =
+            |level: f64| number(tests.iter().flatten().filter(|(test, _)| test.differs(level)).count());
         let squares = tests.iter().flatten().map(|(test, _)| test.difference.powi(2) - test.error.powi(2));
         let size = (squares.sum::<f64>().max(0.0) / tests_count).sqrt();
         #[expect(clippy::cast_possible_truncation, reason = "a share, to be shown")]
@@ -200,7 +208,12 @@ impl Tiles {
 
 /// Of the three colours together; 0 without pixels.
 fn mean_light(pixels: &[[f32; 3]]) -> f64 {
-    mean(&pixels.iter().map(|pixel| pixel.iter().copied().map(f64::from).sum::<f64>() / 3.0).collect::<Vec<_>>())
+    mean(
+        &pixels
+            .iter()
+            .map(|pixel| pixel.iter().copied().map(f64::from).sum::<f64>() / 3.0)
+            .collect::<Vec<_>>(),
+    )
 }
 
 #[expect(clippy::cast_precision_loss, reason = "fewer than 2^53 pixels")]

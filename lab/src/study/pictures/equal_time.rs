@@ -107,8 +107,7 @@ fn curve(rows: &[&PictureRow], metric: Metric, family: Family) -> Vec<CurvePoint
 
 /// Each way of a family over its numbers of photons.
 fn curves(rows: &[&PictureRow], metric: Metric, family: Family) -> Vec<Vec<CurvePoint>> {
-    let mut ways: Vec<Way> =
-        rows.iter().map(|row| row.way).filter(|way| way.family() == family).collect();
+    let mut ways: Vec<Way> = rows.iter().map(|row| row.way).filter(|way| way.family() == family).collect();
     ways.sort_unstable();
     ways.dedup();
     let of_way = |way| along_photons(rows, |sweep, photons| point(sweep, metric, photons, way));

@@ -98,9 +98,8 @@ impl Target {
 
     /// What is said of it.
     pub(super) fn told(&self, scene: &str, study: &PictureStudy) -> SceneReference {
-        let halves = [0, 1].map(|first: usize| {
-            mean(&self.seeds.iter().skip(first).step_by(2).collect::<Vec<_>>())
-        });
+        let halves =
+            [0, 1].map(|first: usize| mean(&self.seeds.iter().skip(first).step_by(2).collect::<Vec<_>>()));
         let direct = |light: &Image<[f32; 3]>| {
             // Both halves have the direct light of the whole.
             let pairs = self.beauty.values().iter().zip(self.indirect.values()).zip(light.values());
@@ -115,8 +114,7 @@ impl Target {
         let LightError { rmse, relative_mse } = LightError::between(&offset, self.indirect.values());
         let inside = self.coverage.inside.values();
         #[expect(clippy::cast_precision_loss, reason = "fewer than 2^53 pixels")]
-        let inside_share =
-            inside.iter().filter(|&&is_inside| is_inside).count() as f64 / inside.len() as f64;
+        let inside_share = inside.iter().filter(|&&is_inside| is_inside).count() as f64 / inside.len() as f64;
         SceneReference {
             scene: scene.to_owned(),
             photons: u64::from(study.reference_seeds) * u64::from(study.reference_photons),

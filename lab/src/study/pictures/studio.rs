@@ -29,7 +29,12 @@ pub(super) struct Studio<'a> {
 }
 
 impl<'a> Studio<'a> {
-    pub(super) fn new(gl: &Gl, study: &'a PictureStudy, scene: &Scene, trace: &TraceSettings) -> Result<Self> {
+    pub(super) fn new(
+        gl: &Gl,
+        study: &'a PictureStudy,
+        scene: &Scene,
+        trace: &TraceSettings,
+    ) -> Result<Self> {
         let settings = study.settings(Way::Fixed { radius: 1 }, study.kernels[0]);
         let mut begin = Instant::now();
         let mut traced = Duration::ZERO;
@@ -65,7 +70,13 @@ impl<'a> Studio<'a> {
         Ok((layers, account.limited_share, begin.elapsed()))
     }
 
-    pub(super) fn row(&mut self, place: &Place<'_>, seed: u64, way: Way, kernel: Kernel) -> Result<PictureRow> {
+    pub(super) fn row(
+        &mut self,
+        place: &Place<'_>,
+        seed: u64,
+        way: Way,
+        kernel: Kernel,
+    ) -> Result<PictureRow> {
         let (layers, limited_share, drawn) = self.draw(way, kernel)?;
         let (error, inside) = place.target.error(&layers);
         let is_searched = matches!(way.family(), Family::Variable | Family::Gather);
