@@ -145,7 +145,9 @@ fn targets_by_hand() {
     assert_eq!(targets.len(), 4 * (1 + 2 + 2));
     // A case without tables leaves its scene and the mean without a measure.
     let mut lacking = compared;
-    lacking.iter_mut().filter(|one| one.scene == "b").for_each(|one| one.tables = None);
+    for one in lacking.iter_mut().filter(|one| one.scene == "b") {
+        one.tables = None;
+    }
     let judged = varikernel_lab::study::pictures::targets(&lacking, [8, 6]);
     let measured = |map: &str| judged.iter().find(|of| of.map == map).unwrap().measured;
     assert!(measured("all scenes").is_none() && measured("b").is_none() && measured("a").is_some());

@@ -151,7 +151,9 @@ mod tests {
         let wrong = judged(&cases).into_iter().filter(|(name, ..)| name.starts_with("tables"));
         assert_eq!(wrong.filter(|(_, measured, _)| measured.is_none()).count(), 4);
         // Other sizes are not judged.
-        cases.iter_mut().for_each(|case| case.size = [512; 2]);
+        for case in &mut cases {
+            case.size = [512; 2];
+        }
         assert_eq!(judged(&cases).len(), 4);
     }
 }

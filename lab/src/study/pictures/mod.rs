@@ -99,11 +99,11 @@ impl PictureStudy {
             size: [48; 2],
             photons: vec![4_000, 16_000],
             min_photons: vec![200, 400],
-            seeds: 3,
-            reference_seeds: 8,
+            seeds: 2,
+            reference_seeds: 6,
             reference_photons: 100_000,
             bias_photons: 16_000,
-            bias_seeds: 4,
+            bias_seeds: 3,
             ..Self::usual()
         }
     }
