@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use super::pictures::{BiasRow, Chosen, Comparison, EqualPhotons, EqualTime, Metric, Way};
 use super::{Study, Summary, plots};
 use crate::bench::Target;
-use crate::confidence::RatioInterval;
+use crate::confidence::{Confidence, RatioInterval};
 
 /// From this share of a tile's light on, a bias is shown as a strong one.
 const STRONG: f32 = 0.1;
@@ -82,7 +82,7 @@ impl TargetView {
 impl BiasView {
     fn of(row: &BiasRow) -> Self {
         let percent = |value: f64| format!("{:.1} %", 100.0 * value);
-        let mean = |of: &crate::Confidence| format!("{:+.2} ± {:.2} %", 100.0 * of.mean, 100.0 * of.margin());
+        let mean = |of: &Confidence| format!("{:+.2} ± {:.2} %", 100.0 * of.mean, 100.0 * of.margin());
         let share = |tiles: u32| percent(f64::from(tiles) / f64::from(row.tested.max(1)));
         Self {
             way: row.way.to_string(),

@@ -278,8 +278,7 @@ fn a_radius_that_is_too_large_loses() {
     }
 }
 
-/// Splats that are far too wide put the light of the middle at edges: a bias, which the test tells from noise.
-/// A reference against seeds of its own kind has none.
+/// The mean of some seeds shows what no single one does: where a way is wrong however many photons come.
 #[test]
 fn bias_is_told_from_noise() {
     let study = PictureStudy {
@@ -299,7 +298,8 @@ fn bias_is_told_from_noise() {
     let found = run(&egl(), &study, Vec::new(), &mut |_, _| Ok(())).unwrap();
     let ways: Vec<Way> = found.biases.iter().map(|row| row.way).collect();
     assert_eq!(ways[..3], [Way::Tables, n(400), Way::Gather { min_photons: 400 }]);
-    assert_eq!(ways.len(), 4);
+    // The best n is not tested twice if it is the default.
+    assert!(matches!(ways[3..], [Way::Fixed { .. }] | [Way::Variable { .. }, Way::Fixed { .. }]), "{ways:?}");
     for row in &found.biases {
         assert_eq!((row.tiles, row.map.len(), row.seeds), ([5, 5], 25, 4));
         assert!(row.surely_biased <= row.biased && row.biased <= row.tested && row.tested > 8, "{row:?}");
@@ -307,8 +307,10 @@ fn bias_is_told_from_noise() {
         assert_eq!(marked, row.biased as usize, "{row:?}");
         assert!(row.inside.half_width.is_some() && row.edges.half_width.is_some(), "{row:?}");
     }
-    let [tables, .., fixed] = found.biases.as_slice() else { panic!("four ways") };
-    assert!(tables.size < fixed.size, "{} and {}", tables.size, fixed.size);
+    let [tables, .., fixed] = found.biases.as_slice() else { panic!("four ways or more") };
+    // Splats lose light at edges, which see a part of their faces alone; a ratio of power to area does not.
+    let [tables, fixed] = [tables.edges.mean, fixed.edges.mean];
+    assert!(fixed < -0.05 && tables.abs() < 0.15 && tables > fixed + 0.1, "{tables} {fixed}");
     let reference = &found.references[0];
     assert!(reference.inside_share > 0.5 && reference.inside_share < 1.0, "{reference:?}");
 }

@@ -93,13 +93,16 @@ pub(super) fn run(
     Ok(ways.into_iter().zip(samples).filter_map(told).collect())
 }
 
-/// Tables, the default n as a splat and as a gather, and the fixed radius with the least RMSE.
+/// Tables, the default n as a splat and as a gather, and the n and the fixed radius with the least RMSE.
 fn ways(study: &PictureStudy, rows: &[PictureRow]) -> Vec<Way> {
     let min_photons = PictureSettings::default().min_photons;
-    let of_kernel = rows.iter().filter(|row| row.kernel == study.kernels[0]);
-    let fixed = Sweep::new(of_kernel).best(Metric::Rmse, Family::Fixed);
-    let others = [Way::Tables, Way::Variable { min_photons }, Way::Gather { min_photons }];
-    others.into_iter().chain(fixed.map(|fixed| fixed.way)).collect()
+    let sweep = Sweep::new(rows.iter().filter(|row| row.kernel == study.kernels[0]));
+    let best = |family| sweep.best(Metric::Rmse, family).map(|best| best.way);
+    let mut ways = vec![Way::Tables, Way::Variable { min_photons }, Way::Gather { min_photons }];
+    let best_min_photons = best(Family::Variable).filter(|way| !ways.contains(way));
+    ways.extend(best_min_photons);
+    ways.extend(best(Family::Fixed));
+    ways
 }
 
 /// Which pixels make up the tiles, and the edges.

@@ -75,3 +75,44 @@ fn share(coarse: &Shown, fine: &Shown, pixel: UVec2) -> (f64, bool) {
     let least = 1.0 / f64::from(FINER * FINER);
     ((area / whole).max(least), covered == FINER * FINER)
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+    use varikernel::scene::Camera;
+    use varikernel::view::View;
+
+    use super::*;
+
+    /// A plane at a distance of 10, seen head on, whose surface a function of the column and row tells.
+    fn plane(size: u32, surface: impl Fn(u32, u32) -> f32) -> Shown {
+        let camera =
+            Camera { position: Vec3::ZERO, direction: Vec3::NEG_Z, up: Vec3::Y, vertical_fov_degrees: 40.0 };
+        let view = View::new(&camera, (1.0, 100.0), UVec2::splat(size));
+        let place = |x, y| {
+            let direction = view.ray(x, y).direction.as_vec3();
+            let at = direction * (-10.0 / direction.z);
+            [at.x, at.y, at.z, 10.0]
+        };
+        Shown {
+            view,
+            position: Image::from_fn(UVec2::splat(size), place),
+            normal: Image::from_fn(UVec2::splat(size), |x, y| [0.0, 0.0, 1.0, surface(x, y)]),
+        }
+    }
+
+    /// Of the five columns of a pixel's places, another face takes two, and the pixel keeps three fifths.
+    #[test]
+    fn a_pixel_sees_a_part_of_its_face() {
+        let coarse = plane(3, |_, _| 1.0);
+        let fine = plane(3 * FINER, |x, _| if x < 8 { 1.0 } else { 2.0 });
+        for (pixel, expected, is_whole) in [([0, 1], 1.0, true), ([1, 0], 0.6, false), ([2, 2], 0.04, false)]
+        {
+            let (found, whole) = share(&coarse, &fine, UVec2::from_array(pixel));
+            assert!((found - expected).abs() < 1e-4 && whole == is_whole, "{pixel:?}: {found}");
+        }
+        // What is not diffuse has no share.
+        let (none, whole) = share(&plane(3, |_, _| 0.0), &fine, UVec2::ONE);
+        assert!(none.abs() < 1e-12 && !whole);
+    }
+}
