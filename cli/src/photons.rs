@@ -25,7 +25,8 @@ use super::{Outcome, output};
 /// of threads.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
-    /// A scene file, or one of: cornell-glass, cornell-boxes, cornell-empty, mirror-ring, water.
+    /// A scene file, or one of: cornell-glass, cornell-boxes, cornell-empty, mirror-ring, water, still-life,
+    /// thin-things.
     #[arg(default_value = "cornell-glass")]
     scene: PathBuf,
 

@@ -10,6 +10,7 @@ use varikernel::context::DeviceChoice;
 use varikernel::image::{check_writable, write_atomically};
 use varikernel_lab::study::{self, Study, StudySettings};
 
+use super::bench::targets;
 use super::saving::{Autosave, Resume, how_to_go_on};
 use super::share_bar::ShareBar;
 use super::{Outcome, device, output, real_map};
@@ -21,7 +22,8 @@ const SAVE_EVERY: Duration = Duration::from_secs(10);
 ///
 /// Every method, build, storage and search is timed and compared with the exact radii, beside approximations
 /// that are no default anywhere. Estimates of density are compared with densities whose truth is known, and
-/// pictures with variable radii with the best fixed ones. The folder gets study.html to look at, study.csv
+/// pictures by light from tables, variable radii and gathers with the best fixed radii, which also judges the
+/// targets of light from tables and tells bias from noise. The folder gets study.html to look at, study.csv
 /// with a row for each measurement, and study.json. Errors are the same at each run, times are not.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
@@ -163,5 +165,6 @@ fn print(study: &Study, args: &Args) -> Result<()> {
     }
     output::print_sentences(&summary.density)?;
     output::print_sentences(&summary.pictures)?;
+    targets::print(&summary.targets, "geometric means over the numbers of photons")?;
     output::print(&format!("written: {}", args.output.join("study.html").display()))
 }

@@ -34,7 +34,7 @@ impl Confidence {
         let mean = samples.iter().sum::<f64>() / number;
         let half_width = (count > 1).then(|| {
             let variance = samples.iter().map(|sample| (sample - mean).powi(2)).sum::<f64>() / (number - 1.0);
-            students_t(count - 1) * (variance / number).sqrt()
+            students_t(number - 1.0) * (variance / number).sqrt()
         });
         Some(Self { count, mean, half_width })
     }
@@ -100,8 +100,8 @@ impl fmt::Display for RatioInterval {
 }
 
 /// What a share of 97.5 % of Student's distribution is below, for at least 1 degree of freedom.
-fn students_t(freedom: usize) -> f64 {
-    let distribution = StudentsT::new(0.0, 1.0, as_number(freedom))
+pub(crate) fn students_t(freedom: f64) -> f64 {
+    let distribution = StudentsT::new(0.0, 1.0, freedom)
         .unwrap_or_else(|error| unreachable!("a scale of 1 and freedom of at least 1: {error}"));
     distribution.inverse_cdf(f64::midpoint(1.0, CONFIDENCE_LEVEL))
 }
@@ -117,12 +117,14 @@ mod tests {
 
     #[test]
     fn students_t_as_in_printed_tables() {
-        for (freedom, printed) in [(1, 12.706), (2, 4.303), (3, 3.182), (4, 2.776), (9, 2.262), (30, 2.042)] {
+        for (freedom, printed) in
+            [(1.0, 12.706), (2.0, 4.303), (3.0, 3.182), (4.0, 2.776), (9.0, 2.262), (30.0, 2.042)]
+        {
             let found = students_t(freedom);
             assert!((found - printed).abs() < 0.0006, "{freedom}: {found}");
         }
         // tan(0.475 π), the closed form of one degree of freedom.
-        assert!((students_t(1) - (0.475 * std::f64::consts::PI).tan()).abs() < 1e-6);
+        assert!((students_t(1.0) - (0.475 * std::f64::consts::PI).tan()).abs() < 1e-6);
     }
 
     #[test]

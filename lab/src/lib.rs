@@ -29,12 +29,14 @@ pub mod study;
 mod summary;
 pub mod synth;
 pub mod thesis;
+mod welch;
 
 pub use confidence::{CONFIDENCE_LEVEL, Confidence, RatioInterval};
 pub use halves::ReferenceHalves;
 pub use picture::{LightError, PictureError};
 pub use statistics::Statistics;
 pub use summary::{RadiusSummary, total_photons};
+pub use welch::Welch;
 
 /// Diffuse landings after which photons of benchmarks and studies are followed no further: committed results
 /// have this many.

@@ -15,7 +15,7 @@ macro_rules! asset {
 }
 
 /// All of them, in the order in which they are listed.
-pub(super) const SHIPPED: [Shipped; 5] = [
+pub(super) const SHIPPED: [Shipped; 7] = [
     Shipped {
         name: "cornell-glass",
         file: "cornell_glass.toml",
@@ -45,5 +45,17 @@ pub(super) const SHIPPED: [Shipped; 5] = [
         file: "water.toml",
         content: asset!("water.toml"),
         meshes: &[("water.obj", asset!("water.obj"))],
+    },
+    Shipped {
+        name: "still-life",
+        file: "still_life.toml",
+        content: asset!("still_life.toml"),
+        meshes: &[("still_life.gltf", asset!("still_life.gltf"))],
+    },
+    Shipped {
+        name: "thin-things",
+        file: "thin_things.toml",
+        content: asset!("thin_things.toml"),
+        meshes: &[("leaves.obj", asset!("leaves.obj"))],
     },
 ];

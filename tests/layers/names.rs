@@ -45,6 +45,7 @@ const SHARED: [(&str, &[(&str, &str)]); 3] = [
             ("row", "a line of what a run found"),
             ("rows", "the lines that a suite has"),
             ("shape", "what the photons of a map look like"),
+            ("targets", "what a suite or study should reach, and whether it does"),
         ],
     ),
     (

@@ -75,7 +75,7 @@ fn the_cornell_boxes_hold_the_committed_numbers() {
 
 #[test]
 fn every_shipped_scene_is_the_file_in_the_folder() {
-    assert_eq!(Scene::shipped_names().count(), 5);
+    assert_eq!(Scene::shipped_names().count(), 7);
     for name in Scene::shipped_names() {
         let shipped = Scene::shipped(name).unwrap();
         let file = format!("{}/assets/scenes/{}.toml", env!("CARGO_MANIFEST_DIR"), name.replace('-', "_"));

@@ -4,7 +4,7 @@ mod cells;
 mod picture;
 mod rivals;
 mod table;
-mod targets;
+pub(crate) mod targets;
 
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -32,7 +32,7 @@ use super::{Outcome, device};
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
     /// Time a fixed set of cases, and judge its targets. Of the choices below, `fast` takes --sizes,
-    /// --build-sizes, --rivals and --protocol, `picture` one size and --photons.
+    /// --build-sizes, --rivals and --protocol, `picture` --sizes and --photons.
     #[arg(long, value_enum, conflicts_with_all = FIXED_BY_SUITE)]
     #[arg(help_heading = "Suite and maps")]
     suite: Option<SuiteName>,
@@ -49,11 +49,11 @@ pub(crate) struct Args {
     #[arg(help_heading = "Suite and maps")]
     build_sizes: Option<Vec<UVec2>>,
 
-    /// Photons of --suite picture that are traced and drawn [default: 1e6].
-    #[arg(long, value_parser = super::photons::parse_count, requires = "suite", value_name = "NUMBER",
-          allow_negative_numbers = true)]
+    /// Photons of --suite picture that are traced and drawn, each number at each size [default: 1e6].
+    #[arg(long, value_delimiter = ',', value_parser = super::photons::parse_count, requires = "suite",
+          value_name = "NUMBERS", allow_negative_numbers = true)]
     #[arg(help_heading = "Suite and maps")]
-    photons: Option<u32>,
+    photons: Option<Vec<u32>>,
 
     /// Map to time with, again for more: a kind of `varikernel synth`, or an EXR, PNG or NPY file of counts.
     #[arg(long = "map", value_name = "FILE|KIND", default_value = "caustic")]
@@ -120,8 +120,8 @@ pub(crate) struct Args {
     #[arg(help_heading = "Time")]
     protocol: Option<ProtocolName>,
 
-    /// Time to share out among all cases, such as 90s or 5m [default: 60s, 3m for --suite fast, or 10m for
-    /// the thesis's protocol].
+    /// Time to share out among all cases, such as 90s or 5m [default: 60s, 3m for --suite fast, 60s for each
+    /// size and number of photons of --suite picture, or 10m for the thesis's protocol].
     #[arg(long, value_parser = duration, allow_negative_numbers = true)]
     #[arg(help_heading = "Time")]
     budget: Option<Duration>,
@@ -226,7 +226,7 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     bar.finish_and_clear();
     let last_save = saver.save(&report);
     table::print_report(&report, json.map(PathBuf::as_path))?;
-    targets::print(&report.targets)?;
+    targets::print(&report.targets, targets::MEDIANS)?;
     let resume = if saver.is_saved { RESUME } else { Resume::Anew };
     last_save.map_err(|error| how_to_go_on(error, &resume))?;
     if !report.runs.iter().any(|run| run.case.method.is_some()) {

@@ -7,7 +7,7 @@ use std::time::Duration;
 use anyhow::{Result, bail};
 use varikernel::image::{check_writable, write_atomically};
 use varikernel::render::Progress;
-use varikernel_lab::bench::{PictureReport, PictureSuite};
+use varikernel_lab::bench::{PictureCase, PictureReport, PictureSuite};
 
 use super::cells::{align_right, new_table, three_digits};
 use super::table::device_facts;
@@ -17,9 +17,6 @@ use crate::saving::{Autosave, Resume, how_to_go_on};
 use crate::{Outcome, device, output};
 
 pub(super) fn run(args: &Args) -> Result<Outcome> {
-    let &[size] = args.sizes.as_slice() else {
-        bail!("--suite picture takes one size\nhelp: give one with --sizes")
-    };
     for (given, name) in [
         (args.build_sizes.is_some(), "build-sizes"),
         (args.rivals, "rivals"),
@@ -38,10 +35,12 @@ pub(super) fn run(args: &Args) -> Result<Outcome> {
         check_writable(path)?;
     }
     let gl = device::open(&args.device)?;
-    let budget = args.budget.unwrap_or(Duration::from_mins(1));
     let usual = PictureSuite::default();
-    let photons = args.photons.unwrap_or(usual.photons);
-    let suite = PictureSuite { size: size.to_array(), photons, ..usual };
+    let photons = args.photons.clone().unwrap_or_else(|| usual.photons.clone());
+    let sizes: Vec<[u32; 2]> = args.sizes.iter().map(glam::UVec2::to_array).collect();
+    let cases = u32::try_from(sizes.len() * photons.len()).unwrap_or(u32::MAX);
+    let budget = args.budget.unwrap_or_else(|| Duration::from_mins(1).saturating_mul(cases));
+    let suite = PictureSuite { sizes, photons, ..usual };
     let bar = Bar::new();
     let mut autosave = Autosave::new(Duration::ZERO);
     let report = suite.run(&gl, budget, &mut |report, done| {
@@ -54,7 +53,7 @@ pub(super) fn run(args: &Args) -> Result<Outcome> {
     bar.finish();
     let saved = args.json.as_ref().map_or(Ok(()), |path| save(&report, path));
     print(&report)?;
-    targets::print(&report.targets)?;
+    targets::print(&report.targets, targets::MEDIANS)?;
     saved.map_err(|error| how_to_go_on(error, &Resume::Anew))?;
     Ok(Outcome::Done)
 }
@@ -67,20 +66,32 @@ fn save(report: &PictureReport, path: &Path) -> varikernel::Result<()> {
 }
 
 fn print(report: &PictureReport) -> Result<()> {
-    let PictureSuite { scene, size: [width, height], photons, .. } = &report.suite;
     let [min_photons, max_radius, fixed] = report.radii;
     let mut facts = device_facts(&report.device);
-    facts.push(("scene", format!("{scene}, {width} x {height}")));
-    facts.push((
-        "photons",
-        format!("{photons} traced, {} drawn, {} contribute", report.drawn, report.contributing),
-    ));
+    facts.push(("scene", report.suite.scene.clone()));
     facts.push(("radii", format!("n {min_photons}, MR {max_radius}; fixed {fixed}")));
     output::print_facts(&facts)?;
+    for case in &report.cases {
+        print_case(case)?;
+    }
+    output::print(
+        "\nms: median time. copies: ms over that of a full-screen pass that copies one texel.\n\
+         points: ms over that of the photons drawn as points.\n\
+         fragments: for each contributing photon, and their time.\n\
+         whole: flux and tables. stage-...: the passes of a whole one after the camera moved.",
+    )
+}
+
+fn print_case(case: &PictureCase) -> Result<()> {
+    let [width, height] = case.size;
+    output::print(&format!(
+        "\n{width} x {height}, {} photons traced, {} drawn, {} contribute",
+        case.photons, case.drawn, case.contributing
+    ))?;
     let mut table =
         new_table(&["stage", "ms", "copies", "point passes", "fragments", "ns each", "samples", "answer"]);
     align_right(&mut table, 1..=6);
-    for row in &report.rows {
+    for row in &case.rows {
         let number = |value: Option<f64>| value.map_or_else(String::new, three_digits);
         table.add_row([
             row.name.clone(),
@@ -94,9 +105,8 @@ fn print(report: &PictureReport) -> Result<()> {
         ]);
     }
     output::print(&table.trim_fmt())?;
-    output::print(
-        "\nms: median time. copies: ms over that of a full-screen pass that copies one texel.\n\
-         points: ms over that of the photons drawn as points.\n\
-         fragments: for each contributing photon, and their time.",
-    )
+    for left_out in &case.left_out {
+        output::print(&format!("left out: {}: {}", left_out.name, left_out.reason))?;
+    }
+    Ok(())
 }

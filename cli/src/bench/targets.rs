@@ -1,4 +1,4 @@
-//! Which targets of a suite hold.
+//! Which targets of a run hold.
 
 use anyhow::Result;
 use varikernel_lab::bench::Target;
@@ -6,12 +6,15 @@ use varikernel_lab::bench::Target;
 use super::cells::{align_right, new_table, three_digits};
 use crate::output;
 
-/// A table for each kind of target; nothing without any.
-pub(super) fn print(targets: &[Target]) -> Result<()> {
+/// How a bench's are.
+pub(crate) const MEDIANS: &str = "ratios of the medians above";
+
+/// A table for each kind of target, and how they are measured; nothing without any.
+pub(crate) fn print(targets: &[Target], measured_as: &str) -> Result<()> {
     if targets.is_empty() {
         return Ok(());
     }
-    output::print("\ntargets, as ratios of the medians above")?;
+    output::print(&format!("\ntargets, as {measured_as}"))?;
     for kind in targets.chunk_by(|a, b| a.name == b.name) {
         let mut table = new_table(&["", "measured", "bound", "map", ""]);
         align_right(&mut table, 1..=2);

@@ -11,10 +11,11 @@ use serde::Serialize;
 use varikernel::image::{
     Picture, Tile, check_writable, contact_sheet, picture_of, write_atomically, write_colours,
 };
+use varikernel::light::TablesStage;
 use varikernel::photon::TraceSettings;
 use varikernel::render::{Layers, Progress, Renderer};
 use varikernel::scene::Scene;
-use varikernel::settings::{KernelRadius, MAX_PICTURE_RADIUS, PictureSettings};
+use varikernel::settings::{Estimate, KernelRadius, MAX_PICTURE_RADIUS, PictureSettings};
 use varikernel::{Gl, Image};
 use varikernel_lab::{LightError, PictureError, ReferenceHalves};
 
@@ -33,7 +34,7 @@ const TOO_LARGE: u32 = 4;
 /// The thesis's Figures 1.2 to 1.4 and ours, with the error of each.
 ///
 /// Draws one scene with the best fixed radius (Figure 1.2), one four times as large (1.3), one pixel (1.4),
-/// and variable ones, from the same photons. Errors are those of indirect light against a reference: the
+/// variable ones, and by tables, from the same photons. Errors are those of indirect light against a reference: the
 /// photons of each pixel alone, averaged over other seeds; they are also given for the caustics alone, where
 /// the reference's indirect irradiance is more than three times its median, and for the other diffuse pixels,
 /// the walls; not if the median is 0. The folder gets figures.png, figures.json and each picture.
@@ -63,11 +64,21 @@ pub(crate) struct Args {
 #[derive(Serialize)]
 struct Figure {
     name: &'static str,
-    radius: KernelRadius,
+    /// Splats of this radius, or light from tables.
+    #[serde(flatten)]
+    way: Way,
     error: PictureError,
     #[serde(flatten)]
     regions: RegionErrors,
     energy_error: f64,
+}
+
+/// How a picture's photons become light.
+#[derive(Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case", tag = "light", content = "radius")]
+enum Way {
+    Splat(KernelRadius),
+    Tables,
 }
 
 /// A fixed radius that was tried.
@@ -139,29 +150,36 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
         .map_or_else(|| unreachable!("at least one radius was tried"), |best| best.radius);
     let too_large = (best * TOO_LARGE).min(MAX_PICTURE_RADIUS);
     let (mut figures, mut tiles) = (Vec::new(), Vec::new());
-    for (name, file, radius) in [
-        ("Figure 1.2, well chosen", "figure_1_2.png", KernelRadius::Fixed(best)),
-        ("Figure 1.3, too large", "figure_1_3.png", KernelRadius::Fixed(too_large)),
-        ("Figure 1.4, too small", "figure_1_4.png", KernelRadius::Fixed(1)),
-        ("Variable", "variable.png", KernelRadius::Variable),
+    let mut reference = Some(Tile {
+        picture: tone_map.apply(&beauty),
+        caption: vec![format!("Reference, {} seeds", args.reference_seeds), errors(reference_noise)],
+    });
+    for (name, file, way) in [
+        ("Figure 1.2, well chosen", "figure_1_2.png", Way::Splat(KernelRadius::Fixed(best))),
+        ("Figure 1.3, too large", "figure_1_3.png", Way::Splat(KernelRadius::Fixed(too_large))),
+        ("Figure 1.4, too small", "figure_1_4.png", Way::Splat(KernelRadius::Fixed(1))),
+        ("Variable", "variable.png", Way::Splat(KernelRadius::Variable)),
+        ("Tables", "tables.png", Way::Tables),
     ] {
-        let (layers, figure) = studio.draw(name, radius)?;
+        let (layers, figure) = studio.draw(name, way)?;
         let picture = tone_map.apply(&layers.beauty);
         write_colours(&args.output.join(file), &picture)?;
         tiles.push(Tile { picture, caption: caption(&figure, settings.min_photons) });
-        if radius == KernelRadius::Variable {
-            let colours = Picture { range: Some(1..=settings.max_radius), ..Picture::default() };
-            let caption = vec![
-                "Its radius map".to_owned(),
-                format!("1 (dark) to {} pixels (red)", settings.max_radius),
-            ];
+        let (title, widest) = match way {
+            Way::Splat(KernelRadius::Fixed(_)) => ("", None),
+            Way::Splat(KernelRadius::Variable) => ("Its radius map", Some(settings.max_radius)),
+            Way::Tables => ("Its widths", Some(TablesStage::WIDEST)),
+        };
+        if let Some(widest) = widest {
+            let colours = Picture { range: Some(1..=widest), ..Picture::default() };
+            let caption = vec![title.to_owned(), format!("1 (dark) to {widest} pixels (red)")];
             tiles.push(Tile { picture: picture_of(&layers.radius, &colours), caption });
+            // Beside the first of them.
+            tiles.extend(reference.take());
         }
         figures.push(figure);
     }
     bar.finish();
-    let caption = vec![format!("Reference, {} seeds", args.reference_seeds), errors(reference_noise)];
-    tiles.push(Tile { picture: tone_map.apply(&beauty), caption });
     write_colours(&args.output.join("figures.png"), &contact_sheet(&tiles, 3))?;
     let report = Report {
         version: env!("CARGO_PKG_VERSION"),
@@ -209,14 +227,18 @@ struct Studio {
 }
 
 impl Studio {
-    fn draw(&mut self, name: &'static str, radius: KernelRadius) -> Result<(Layers, Figure)> {
-        let (layers, account) = self.renderer.picture(&PictureSettings { radius, ..self.settings })?;
+    fn draw(&mut self, name: &'static str, way: Way) -> Result<(Layers, Figure)> {
+        let settings = match way {
+            Way::Splat(radius) => PictureSettings { radius, ..self.settings },
+            Way::Tables => PictureSettings { estimate: Estimate::Tables, ..self.settings },
+        };
+        let (layers, account) = self.renderer.picture(&settings)?;
         let error = PictureError::of_light_and_sight(
             [&layers.indirect, &self.indirect],
             [&layers.beauty, &self.beauty],
         );
         let regions = self.regions.errors(&layers.indirect, &self.indirect);
-        Ok((layers, Figure { name, radius, error, regions, energy_error: account.energy_error() }))
+        Ok((layers, Figure { name, way, error, regions, energy_error: account.energy_error() }))
     }
 
     /// The errors of fixed radii, as far as it makes sense.
@@ -224,7 +246,7 @@ impl Studio {
         let mut fixed: Vec<FixedRadius> = Vec::new();
         for radius in RADII {
             bar.show(Progress { stage: "fixed radii", done: f64::from(radius) / 32.0 });
-            let Figure { error, regions, .. } = self.draw("", KernelRadius::Fixed(radius))?.1;
+            let Figure { error, regions, .. } = self.draw("", Way::Splat(KernelRadius::Fixed(radius)))?.1;
             let is_past = fixed.last().is_some_and(|before| {
                 let walls = regions.walls.zip(before.regions.walls);
                 let all_worse =
@@ -245,18 +267,15 @@ impl Studio {
 }
 
 fn caption(figure: &Figure, min_photons: u32) -> Vec<String> {
-    let width = match figure.radius {
-        KernelRadius::Fixed(radius) => format!("radius {radius}"),
-        KernelRadius::Variable => format!("n = {min_photons}"),
+    let name = match figure.way {
+        Way::Splat(KernelRadius::Fixed(radius)) => format!("{}: radius {radius}", figure.name),
+        Way::Splat(KernelRadius::Variable) => format!("{}: n = {min_photons}", figure.name),
+        Way::Tables => figure.name.to_owned(),
     };
     let rmse =
         |error: Option<LightError>| error.map_or_else(|| "-".to_owned(), |of| format!("{:.5}", of.rmse));
     let RegionErrors { caustic, walls } = figure.regions;
-    vec![
-        format!("{}: {width}", figure.name),
-        errors(figure.error),
-        format!("caustic {} walls {}", rmse(caustic), rmse(walls)),
-    ]
+    vec![name, errors(figure.error), format!("caustic {} walls {}", rmse(caustic), rmse(walls))]
 }
 
 fn errors(PictureError { rmse, relative_mse, .. }: PictureError) -> String {

@@ -17,7 +17,8 @@ use crate::synth::parse_size;
 /// What is rendered, and with how many photons; `figures` takes the same.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Source {
-    /// A scene file, or one of: cornell-glass, cornell-boxes, cornell-empty, mirror-ring, water.
+    /// A scene file, or one of: cornell-glass, cornell-boxes, cornell-empty, mirror-ring, water, still-life,
+    /// thin-things.
     #[arg(default_value = "cornell-glass")]
     pub(crate) scene: PathBuf,
 

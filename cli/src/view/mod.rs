@@ -60,8 +60,8 @@ Without a display, `varikernel render` and `varikernel radius` make the same fil
 #[derive(Debug, clap::Args)]
 #[command(after_help = AFTER_HELP)]
 pub(crate) struct Args {
-    /// A scene file, one of cornell-glass, cornell-boxes, cornell-empty, mirror-ring, water, a map (EXR, PNG
-    /// or NPY, counts per pixel), or settings that the window saved (JSON).
+    /// A scene file, one of cornell-glass, cornell-boxes, cornell-empty, mirror-ring, water, still-life,
+    /// thin-things, a map (EXR, PNG or NPY, counts per pixel), or settings that the window saved (JSON).
     #[arg(default_value = "cornell-glass", value_name = "SCENE|MAP")]
     source: PathBuf,
 

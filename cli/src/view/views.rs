@@ -4,9 +4,6 @@ use glow::Texture;
 use varikernel::glam::UVec2;
 use varikernel::glow;
 
-/// The widest light from tables, in pixels.
-pub(super) const WIDEST: u32 = 64;
-
 /// A stage's result as it is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub(super) enum View {

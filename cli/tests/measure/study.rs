@@ -132,8 +132,10 @@ fn settings() -> StudySettings {
         photons: vec![1500],
         min_photons: vec![400],
         seeds: 2,
-        reference_seeds: 2,
+        reference_seeds: 4,
         reference_photons: 10_000,
+        bias_photons: 1500,
+        bias_seeds: 2,
         ..PictureStudy::quick()
     };
     StudySettings { radii, pictures, ..StudySettings::quick() }
@@ -205,7 +207,7 @@ fn the_command_writes_a_page_a_table_and_everything() {
     study(&["--quick"])
         .assert()
         .success()
-        .stdout(contains("copies").and(contains("written: study/study.html")));
+        .stdout(contains("copies").and(contains("written: study/study.html")).and(contains("targets hold")));
     let page = std::fs::read_to_string(folder.path().join("study/study.html")).unwrap();
     for text in [
         "Run time against error",
@@ -213,13 +215,16 @@ fn the_command_writes_a_page_a_table_and_everything() {
         "<svg",
         "every radius is exact",
         "relative RMSE",
+        "Targets of light from tables",
+        "Bias apart from noise",
+        "splat, the best fixed radius",
     ] {
         assert!(page.contains(text), "{text}");
     }
     assert!(!page.contains("http-equiv") && !page.contains("src="), "self-contained");
     assert!(!page.contains("NaN") && !page.contains(">inf"));
     let csv = std::fs::read_to_string(folder.path().join("study/study.csv")).unwrap();
-    for part in ["\nradii,", "\ndensity,", "\npicture,"] {
+    for part in ["\nradii,", "\ndensity,", "\npicture,", "\nbias,"] {
         assert!(csv.contains(part), "{part}");
     }
 

@@ -34,7 +34,7 @@ mod workbench;
 
 pub use case::{AUTO, Case, Stage};
 pub use compare::{ComparedRun, Comparison, Verdict, compare};
-pub use picture::{PictureReport, PictureRow, PictureSuite};
+pub use picture::{PictureCase, PictureLeftOut, PictureReport, PictureRow, PictureSuite};
 pub use report::{Device, LeftOut, Report, Run};
 pub use runner::{Progress, empty_report, run};
 pub use settings::{BenchSettings, MapInfo, MapSource, Protocol};

@@ -29,7 +29,7 @@ impl fmt::Display for Side {
 }
 
 /// The side, the bound and its unit.
-pub(super) type Bound = (Side, f64, &'static str);
+pub(crate) type Bound = (Side, f64, &'static str);
 
 /// A ratio of medians of one run, and what it should be.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -58,7 +58,7 @@ pub struct Target {
 
 impl Target {
     /// A target, judged.
-    pub(super) fn new(
+    pub(crate) fn new(
         (name, what): (&str, &str),
         map: &MapInfo,
         question: String,

@@ -11,6 +11,8 @@ use varikernel::image::{Image, ToneMap};
 /// The share of the reference's root mean square below which an error counts as if the pixel were that
 /// bright.
 const DARK: f64 = 0.1;
+/// The share of a reference's own error below which no error can be told.
+const TOLD: f64 = 0.1;
 
 /// The error of a picture of linear RGB radiance against its reference, over all pixels.
 ///
@@ -87,7 +89,18 @@ impl LightError {
     /// If there are more of one than of the other.
     #[must_use]
     pub fn between(found: &[[f32; 3]], wanted: &[[f32; 3]]) -> Self {
-        assert_eq!(found.len(), wanted.len(), "as many pixels");
+        Self::beyond_noise(found, wanted, &vec![[0.0; 3]; wanted.len()])
+    }
+
+    /// The same against a reference that is noisy itself, by these variances: what they add to the squared
+    /// differences on the average is taken away. An error of less than a tenth of the reference's can't be
+    /// told, and counts as that.
+    ///
+    /// # Panics
+    /// If there are more of one than of the others.
+    #[must_use]
+    pub fn beyond_noise(found: &[[f32; 3]], wanted: &[[f32; 3]], variances: &[[f64; 3]]) -> Self {
+        assert_eq!([found.len(), variances.len()], [wanted.len(); 2], "as many pixels");
         let values =
             |pixels: &[[f32; 3]]| -> Vec<f64> { pixels.iter().flatten().copied().map(f64::from).collect() };
         let (found, wanted) = (values(found), values(wanted));
@@ -95,13 +108,21 @@ impl LightError {
         let count = wanted.len() as f64;
         let mean_square = wanted.iter().map(|value| value * value).sum::<f64>() / count;
         let epsilon = DARK * DARK * mean_square;
-        let (mut squared, mut relative) = (0.0, 0.0);
-        for (found, wanted) in found.iter().zip(&wanted) {
+        let relative = |square: f64, wanted: f64| {
+            if square > 0.0 { square / (wanted * wanted + epsilon) } else { 0.0 }
+        };
+        // Of what was found, and of the reference.
+        let (mut all, mut noise) = ([0.0; 2], [0.0; 2]);
+        for ((found, wanted), &variance) in found.iter().zip(&wanted).zip(variances.iter().flatten()) {
             let difference = (found - wanted).powi(2);
-            squared += difference;
-            relative += if difference > 0.0 { difference / (wanted * wanted + epsilon) } else { 0.0 };
+            for (sums, square) in [(&mut all, difference), (&mut noise, variance)] {
+                sums[0] += square;
+                sums[1] += relative(square, *wanted);
+            }
         }
-        Self { rmse: (squared / count).sqrt(), relative_mse: relative / count }
+        let [square, relative_mse] = [0, 1]
+            .map(|measure: usize| (all[measure] - noise[measure]).max(TOLD * TOLD * noise[measure]) / count);
+        Self { rmse: square.sqrt(), relative_mse }
     }
 }
 
@@ -147,6 +168,17 @@ mod tests {
         let error = PictureError::between(&Image::filled(size, [0.0; 3]), &Image::filled(size, [4.0; 3]));
         assert_eq!(error.rmse, 4.0);
         assert!((error.relative_mse - 1.0 / 1.01).abs() < 1e-12, "{error:?}");
+    }
+
+    /// A reference that is off by 0.3 has that square taken away, and no more than nine tenths of 0.3.
+    #[test]
+    fn the_noise_of_a_reference_is_taken_away() {
+        let (found, wanted) = ([[1.5; 3]; 4], [[1.0; 3]; 4]);
+        let error = |noise: f64| LightError::beyond_noise(&found, &wanted, &[[noise * noise; 3]; 4]);
+        assert_eq!(error(0.0), LightError::between(&found, &wanted));
+        assert!((error(0.3).rmse - 0.4).abs() < 1e-12, "0.25 - 0.09 is 0.16: {:?}", error(0.3));
+        assert!((error(0.3).relative_mse - 0.16 / 1.01).abs() < 1e-12, "{:?}", error(0.3));
+        assert!((error(0.5).rmse - 0.05).abs() < 1e-12 && (error(2.0).rmse - 0.2).abs() < 1e-12);
     }
 
     /// A grey that the tone map makes of both: the exposure brings the reference to one third, and a picture

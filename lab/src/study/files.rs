@@ -6,10 +6,10 @@ use std::path::Path;
 use serde::Serialize;
 
 use super::density::{DensityRow, Width};
-use super::pictures::{PictureRow, PictureStudy};
+use super::pictures::{BiasRow, PictureRow, PictureStudy};
 use super::radii::RadiusRow;
 use super::{Study, Summary};
-use crate::picture::PictureError;
+use crate::picture::{LightError, PictureError};
 use varikernel::error::{Error, Result};
 use varikernel::image::write_atomically;
 
@@ -17,7 +17,7 @@ use varikernel::image::write_atomically;
 /// them is the same at each run.
 #[derive(Debug, Default, Serialize)]
 struct Record<'a> {
-    /// `radii`, `density` or `picture`.
+    /// `radii`, `density`, `picture` or `bias`.
     part: &'static str,
     /// The map, the shape or the scene.
     subject: &'a str,
@@ -27,6 +27,7 @@ struct Record<'a> {
     photons: Option<u64>,
     seed: Option<u64>,
     seeds: Option<u32>,
+    /// Of a radius map; of a picture, `splat`, `gather` or `tables`.
     method: &'a str,
     build: &'a str,
     storage: &'a str,
@@ -49,7 +50,7 @@ struct Record<'a> {
     mean_distance: Option<f64>,
     rms_distance: Option<f64>,
     largest_distance: Option<u32>,
-    /// Densities, in parts of the mean; pictures, in radiance.
+    /// Densities and bias, in parts of the mean; pictures, in radiance.
     mean_error: Option<f64>,
     mean_error_half_width: Option<f64>,
     bias: Option<f64>,
@@ -61,6 +62,16 @@ struct Record<'a> {
     relative_mse: Option<f64>,
     ssim: Option<f64>,
     flip: Option<f64>,
+    /// Pixels inside of faces alone.
+    inside_rmse: Option<f64>,
+    inside_relative_mse: Option<f64>,
+    /// The mean error of pixels at edges of faces.
+    edge_error: Option<f64>,
+    edge_error_half_width: Option<f64>,
+    /// Tiles that were tested for bias, those that have it at a level of 1 %, and those that surely have it.
+    tested_tiles: Option<u32>,
+    biased_tiles: Option<u32>,
+    surely_biased_tiles: Option<u32>,
     memory_bytes: Option<u64>,
     ms: Option<f64>,
     copies: Option<f64>,
@@ -129,7 +140,8 @@ impl<'a> Record<'a> {
 
     fn of_picture(row: &'a PictureRow, study: &PictureStudy) -> Self {
         let [width, height] = study.size.map(Some);
-        let min_photons = row.width.min_photons();
+        let min_photons = row.way.min_photons();
+        let LightError { rmse: inside_rmse, relative_mse: inside_relative_mse } = row.inside;
         let PictureError { rmse, relative_mse, ssim, flip } = row.error;
         Self {
             part: "picture",
@@ -138,18 +150,48 @@ impl<'a> Record<'a> {
             height,
             photons: Some(row.photons.into()),
             seed: Some(row.seed),
+            method: row.way.method(),
             kernel: format!("{:?}", row.kernel).to_lowercase(),
             min_photons,
             max_radius: min_photons.map(|_| study.max_radius),
-            fixed_radius: row.width.radius(),
+            fixed_radius: row.way.radius(),
             mean_radius: Some(row.mean_radius),
             limited_share: Some(row.limited_share),
             rmse: Some(rmse),
             relative_mse: Some(relative_mse),
             ssim: Some(ssim),
             flip: Some(flip),
+            inside_rmse: Some(inside_rmse),
+            inside_relative_mse: Some(inside_relative_mse),
             trace_seconds: Some(row.seconds_before),
             picture_seconds: Some(row.seconds_drawing),
+            ..Self::default()
+        }
+    }
+
+    fn of_bias(row: &'a BiasRow, study: &PictureStudy) -> Self {
+        let [width, height] = study.size.map(Some);
+        let min_photons = row.way.min_photons();
+        Self {
+            part: "bias",
+            subject: &row.scene,
+            width,
+            height,
+            photons: Some(row.photons.into()),
+            seeds: Some(row.seeds),
+            method: row.way.method(),
+            kernel: format!("{:?}", study.kernels[0]).to_lowercase(),
+            min_photons,
+            max_radius: min_photons.map(|_| study.max_radius),
+            fixed_radius: row.way.radius(),
+            mean_error: Some(row.inside.mean),
+            mean_error_half_width: row.inside.half_width,
+            bias: Some(row.size),
+            edge_error: Some(row.edges.mean),
+            edge_error_half_width: row.edges.half_width,
+            tested_tiles: Some(row.tested),
+            biased_tiles: Some(row.biased),
+            surely_biased_tiles: Some(row.surely_biased),
             ..Self::default()
         }
     }
@@ -231,6 +273,9 @@ impl Study {
             }
             for row in &self.pictures {
                 csv.serialize(Record::of_picture(row, &self.settings.pictures))?;
+            }
+            for row in &self.biases {
+                csv.serialize(Record::of_bias(row, &self.settings.pictures))?;
             }
             csv.flush()
         })

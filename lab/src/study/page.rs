@@ -3,8 +3,8 @@
 use askama::Template as _;
 
 use super::density::DensityRow;
+use super::page_pictures::PicturesView;
 use super::pareto::Overall;
-use super::pictures::{Chosen, EqualPhotons, EqualTime, Metric, Width, Winner};
 use super::radii::LeftOut;
 use super::shape::Shape;
 use super::{Study, Summary, plots, words};
@@ -25,9 +25,7 @@ struct Page<'a> {
     density_words: Vec<String>,
     density_plots: Vec<String>,
     density_rows: Vec<[String; 8]>,
-    picture_words: Vec<String>,
-    picture_plots: Vec<String>,
-    picture_rows: Vec<[String; 8]>,
+    pictures: PicturesView,
 }
 
 /// A way that was not run, on which maps.
@@ -65,8 +63,9 @@ impl Study {
 
 impl<'a> Page<'a> {
     fn of(study: &'a Study, command: &'a str) -> Self {
-        let Summary { advice, density, pictures, radii, equal_photons, equal_time } = study.summary();
-        let plotted = |curves: &&EqualTime| matches!(curves.metric, Metric::Rmse | Metric::RelativeMse);
+        let summary = study.summary();
+        let pictures = PicturesView::of(study, &summary);
+        let Summary { advice, density, radii, .. } = summary;
         let questions = radii.iter().enumerate().map(|(index, (question, overall))| QuestionView {
             title: question.to_string(),
             plot: plots::radii(overall, *question),
@@ -85,9 +84,7 @@ impl<'a> Page<'a> {
             stopping_rule: plots::stopping_rule(&study.density),
             density_plots: Shape::ALL.map(|shape| plots::density(&study.density, shape)).into(),
             density_rows: study.density.iter().map(density_row).collect(),
-            picture_words: pictures,
-            picture_plots: equal_time.iter().filter(plotted).map(plots::pictures).collect(),
-            picture_rows: equal_photons.iter().map(picture_row).collect(),
+            pictures,
         }
     }
 }
@@ -124,32 +121,6 @@ fn density_row(row: &DensityRow) -> [String; 8] {
         number(row.noise),
         row.rmse.to_string(),
         row.relative_rmse.to_string(),
-    ]
-}
-
-fn picture_row(row: &EqualPhotons) -> [String; 8] {
-    let width = |chosen: &Chosen| {
-        let end = if chosen.at_end { " (last tried)" } else { "" };
-        match chosen.width {
-            Width::Variable { min_photons } => format!("n = {min_photons}{end}"),
-            Width::Fixed { radius } => format!("radius {radius}{end}"),
-        }
-    };
-    let default = row.default.map_or_else(String::new, |default| default.ratio.to_string());
-    let winner = match row.best.winner {
-        Winner::Variable => "variable",
-        Winner::Fixed => "fixed",
-        Winner::Undecided => "undecided",
-    };
-    [
-        row.scene.clone(),
-        row.photons.to_string(),
-        row.metric.name().to_owned(),
-        format!("{}: {}", width(&row.fixed), row.fixed.error),
-        format!("{}: {}", width(&row.best.variable), row.best.variable.error),
-        row.best.ratio.to_string(),
-        default,
-        winner.to_owned(),
     ]
 }
 

@@ -2,10 +2,11 @@
 
 use super::density::{DensityRow, Width};
 use super::pareto::Overall;
-use super::pictures::{CurvePoint, EqualTime};
+use super::pictures::{CurvePoint, EqualTime, Metric};
 use super::radii::Question;
 use super::shape::Shape;
 use crate::chart::{Axis, COLOURS, Chart, Point, Scale, Series, Style};
+use varikernel::settings::PictureSettings;
 
 /// The methods that share a colour, by the beginning of their names.
 const FAMILIES: [(&str, &str); 6] = [
@@ -161,8 +162,7 @@ pub(super) fn stopping_rule(rows: &[DensityRow]) -> String {
     .svg()
 }
 
-/// Error of pictures over their time: variable radii with the best n, and the best fixed radius, for more and
-/// more photons.
+/// Error of pictures over their time, for more and more photons: each way is a curve.
 pub(super) fn pictures(curves: &EqualTime) -> String {
     let line = |name: &str, colour, style, points: &[CurvePoint]| Series {
         name: name.to_owned(),
@@ -176,13 +176,21 @@ pub(super) fn pictures(curves: &EqualTime) -> String {
             })
             .collect(),
     };
+    let n = PictureSettings::default().min_photons;
+    let unit = match curves.metric {
+        Metric::Rmse | Metric::RmseOfAll => " (radiance)",
+        _ => " (of 1)",
+    };
     Chart {
         title: format!("{}: {}", curves.scene, curves.metric.name()),
         x: axis("time of a picture without direct light (s)", Scale::Logarithmic),
-        y: axis(curves.metric.name(), Scale::Logarithmic),
+        y: axis(&format!("{}{unit}", curves.metric.name()), Scale::Logarithmic),
         series: vec![
-            line("variable, the best n", COLOURS[0], Style::Solid, &curves.variable),
-            line("the best fixed radius", COLOURS[1], Style::Dashed, &curves.fixed),
+            line("light from tables", COLOURS[2], Style::Solid, &curves.tables),
+            line("splat, the best fixed radius", COLOURS[1], Style::Dashed, &curves.fixed),
+            line("splat, the best n", COLOURS[0], Style::Solid, &curves.variable),
+            line(&format!("splat, n = {n}"), COLOURS[3], Style::Dotted, &curves.default),
+            line(&format!("gather, n = {n}"), COLOURS[5], Style::Dashed, &curves.gather),
         ],
     }
     .svg()

@@ -40,7 +40,7 @@ const WIDTHS: &str = "widths of light";
 const TILE_SIDE: u32 = 64;
 /// As far as light goes: the widest box, then the widest that it is smoothed over, and a pixel whose neighbour's
 /// shares hold for it.
-const REACH: u32 = 64 + MOST_SMOOTH + 2;
+const REACH: u32 = TablesStage::WIDEST + MOST_SMOOTH + 2;
 /// The widest box that light is smoothed over, by its radius in pixels.
 const MOST_SMOOTH: u32 = 16;
 /// As many steps of light a pixel as such a box can sum in 32 bits.
@@ -106,6 +106,9 @@ impl Maps {
 }
 
 impl TablesStage {
+    /// The widest box that light is gathered from, by its radius in pixels.
+    pub const WIDEST: u32 = 64;
+
     /// Allocates and compiles for maps of `size`.
     ///
     /// # Errors

@@ -7,6 +7,7 @@ use std::time::Duration;
 use anyhow::{Result, bail};
 use varikernel::glam::{UVec2, Vec3};
 use varikernel::image::{Attribute, Format, LayerFile, ToneMap, write_colours};
+use varikernel::light::TablesStage;
 use varikernel::render::{Inspection, Live, LiveSettings};
 use varikernel::settings::Estimate;
 use varikernel::view::Camera;
@@ -15,7 +16,7 @@ use varikernel::{Gl, Image};
 use super::Readout;
 use crate::photons::load;
 use crate::view::choices::Choices;
-use crate::view::views::{Maps, WIDEST, round_up};
+use crate::view::views::{Maps, round_up};
 use crate::words::in_words_of_options;
 
 pub(in crate::view) struct SceneEngine {
@@ -74,7 +75,7 @@ impl SceneEngine {
             limited: live.limited().filter(|_| drawn),
             widths,
             most_photons: round_up(40.0 * mean),
-            max_radius: if widths { WIDEST } else { irradiance.radii.search.max_radius },
+            max_radius: if widths { TablesStage::WIDEST } else { irradiance.radii.search.max_radius },
         }
     }
 

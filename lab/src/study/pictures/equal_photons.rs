@@ -1,9 +1,9 @@
-//! Variable against fixed radii with the same photons.
+//! Every other way against the best fixed radius, with the same photons.
 
 use serde::{Deserialize, Serialize};
 
 use super::metric::Sweep;
-use super::{Chosen, Metric, PictureRow, Width};
+use super::{Chosen, Family, Metric, PictureRow, Way};
 use crate::confidence::RatioInterval;
 use varikernel::settings::{Kernel, PictureSettings};
 
@@ -12,7 +12,7 @@ use varikernel::settings::{Kernel, PictureSettings};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Winner {
-    /// Variable radii.
+    /// What each pixel or photon chose a width for: variable radii, or tables.
     Variable,
     /// The fixed radius.
     Fixed,
@@ -21,7 +21,7 @@ pub enum Winner {
 }
 
 impl Winner {
-    /// By the ratio of the variable error over the fixed one.
+    /// By the ratio of the other error over the fixed one.
     #[must_use]
     pub fn by(ratio: &RatioInterval) -> Self {
         if ratio.is_below_one() {
@@ -34,18 +34,18 @@ impl Winner {
     }
 }
 
-/// One n against the best fixed radius.
+/// One way against the best fixed radius.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Comparison {
-    /// n, and its error.
-    pub variable: Chosen,
-    /// Variable error over fixed error, paired by seed.
+    /// The way, and its error.
+    pub chosen: Chosen,
+    /// Its error over that of the fixed radius, paired by seed.
     pub ratio: RatioInterval,
     /// Who is better.
     pub winner: Winner,
 }
 
-/// Variable radii against the best fixed one, from the same photons.
+/// The other ways against the best fixed radius, from the same photons.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct EqualPhotons {
     /// The scene's name.
@@ -62,6 +62,12 @@ pub struct EqualPhotons {
     pub best: Comparison,
     /// The program's default n, which is chosen without the answer; if it was tried.
     pub default: Option<Comparison>,
+    /// A gather with that n; if it was tried.
+    pub gather: Option<Comparison>,
+    /// Light from tables, where nothing is chosen; if it was tried.
+    pub tables: Option<Comparison>,
+    /// The error of tables over that of the default n, paired by seed.
+    pub tables_over_default: Option<RatioInterval>,
 }
 
 /// Compares, for each scene, number of photons and kernel among `rows`, and each metric. What lacks fixed or
@@ -75,26 +81,37 @@ pub fn equal_photons(rows: &[PictureRow]) -> Vec<EqualPhotons> {
                 .filter(|row| (row.scene.as_str(), row.photons, row.kernel) == (scene, photons, kernel)),
         );
         for metric in Metric::ALL {
-            let Some(fixed) = sweep.best(metric, true) else { continue };
-            let compare = |variable: Chosen| {
-                let ratio = RatioInterval::of(&paired(&sweep, metric, variable.width, fixed.width))?;
-                Some(Comparison { variable, ratio, winner: Winner::by(&ratio) })
+            let Some(fixed) = sweep.best(metric, Family::Fixed) else { continue };
+            let compare = |chosen: Chosen| {
+                let ratio = RatioInterval::of(&paired(&sweep, metric, chosen.way, fixed.way))?;
+                Some(Comparison { chosen, ratio, winner: Winner::by(&ratio) })
             };
-            let Some(best) = sweep.best(metric, false).and_then(compare) else { continue };
-            let default = sweep.variable(metric, PictureSettings::default().min_photons).and_then(compare);
-            let scene = scene.to_owned();
-            found.push(EqualPhotons { scene, photons, kernel, metric, fixed, best, default });
+            let Some(best) = sweep.best(metric, Family::Variable).and_then(compare) else { continue };
+            let min_photons = PictureSettings::default().min_photons;
+            let usual = Way::Variable { min_photons };
+            found.push(EqualPhotons {
+                scene: scene.to_owned(),
+                photons,
+                kernel,
+                metric,
+                fixed,
+                best,
+                default: sweep.one(metric, usual).and_then(compare),
+                gather: sweep.one(metric, Way::Gather { min_photons }).and_then(compare),
+                tables: sweep.one(metric, Way::Tables).and_then(compare),
+                tables_over_default: RatioInterval::of(&paired(&sweep, metric, Way::Tables, usual)),
+            });
         }
     }
     found
 }
 
-/// Errors of two widths for the seeds that both have.
-fn paired(sweep: &Sweep<'_>, metric: Metric, first: Width, second: Width) -> Vec<(f64, f64)> {
+/// Errors of two ways for the seeds that both have.
+fn paired(sweep: &Sweep<'_>, metric: Metric, first: Way, second: Way) -> Vec<(f64, f64)> {
     let second = sweep.of(second);
     let pair = |row: &PictureRow| {
         let other = second.iter().find(|other| other.seed == row.seed)?;
-        Some((metric.of(&row.error), metric.of(&other.error)))
+        Some((metric.of(row), metric.of(other)))
     };
     sweep.of(first).into_iter().filter_map(pair).collect()
 }

@@ -4,9 +4,10 @@ use serde::{Deserialize, Serialize};
 
 use super::equal_photons::distinct;
 use super::metric::Sweep;
-use super::{Metric, PictureRow, Width, Winner};
+use super::{Family, Metric, PictureRow, Way, Winner};
 use crate::confidence::{Confidence, RatioInterval};
-use varikernel::settings::Kernel;
+use crate::statistics::Statistics;
+use varikernel::settings::{Kernel, PictureSettings};
 
 /// Budgets that are compared, evenly spaced in the logarithm, where both curves are defined.
 const BUDGETS: u32 = 5;
@@ -16,9 +17,9 @@ const BUDGETS: u32 = 5;
 pub struct CurvePoint {
     /// Photons that left the lights.
     pub photons: u32,
-    /// The n or fixed radius with the least mean error for them.
-    pub width: Width,
-    /// Mean seconds of a whole picture over the seeds: photons, radii and kernels.
+    /// What was drawn: with the least mean error for them, where a number was chosen.
+    pub way: Way,
+    /// Median seconds of a whole picture over the seeds: photons, counts, radii and light.
     pub seconds: f64,
     /// Mean error over the seeds.
     pub error: Confidence,
@@ -32,16 +33,16 @@ pub struct Budget {
     /// Seconds of a picture.
     pub seconds: f64,
     /// The n with the least error at that time, and the error: a geometric mean over the seeds.
-    pub variable: (Width, f64),
+    pub variable: (Way, f64),
     /// The fixed radius, the same.
-    pub fixed: (Width, f64),
+    pub fixed: (Way, f64),
     /// Variable error over fixed error, paired by seed.
     pub ratio: RatioInterval,
     /// Who is better.
     pub winner: Winner,
 }
 
-/// Error over time for both.
+/// Error over time for every way.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct EqualTime {
     /// The scene's name.
@@ -54,7 +55,13 @@ pub struct EqualTime {
     pub variable: Vec<CurvePoint>,
     /// The best fixed radius for each number of photons, by increasing time.
     pub fixed: Vec<CurvePoint>,
-    /// Times that both reach. Each width has a curve of its own over its numbers of photons, errors
+    /// Splats with the default n, by increasing time, as the others.
+    pub default: Vec<CurvePoint>,
+    /// Gathers with that n.
+    pub gather: Vec<CurvePoint>,
+    /// Light from tables.
+    pub tables: Vec<CurvePoint>,
+    /// Times that variable and fixed radii both reach. Each width has a curve of its own over its numbers of photons, errors
     /// interpolated by their logarithm over that of the time, and the lowest at that time counts: a narrow
     /// kernel with more photons may beat what is best for either number. None where both share no time.
     pub budgets: Vec<Budget>,
@@ -69,31 +76,42 @@ pub fn equal_time(rows: &[PictureRow]) -> Vec<EqualTime> {
         let of_scene: Vec<&PictureRow> =
             rows.iter().filter(|row| (row.scene.as_str(), row.kernel) == (scene, kernel)).collect();
         for metric in Metric::ALL {
-            let [variable, fixed] = [false, true].map(|is_fixed| curve(&of_scene, metric, is_fixed));
-            let [variables, fixeds] = [false, true].map(|is_fixed| curves(&of_scene, metric, is_fixed));
-            let budgets = budgets(&variables, &fixeds);
-            found.push(EqualTime { scene: scene.to_owned(), kernel, metric, variable, fixed, budgets });
+            let families = [Family::Variable, Family::Fixed];
+            let [variable, fixed] = families.map(|family| curve(&of_scene, metric, family));
+            let [variables, fixeds] = families.map(|family| curves(&of_scene, metric, family));
+            let one = |way| along_photons(&of_scene, |sweep, photons| point(sweep, metric, photons, way));
+            let min_photons = PictureSettings::default().min_photons;
+            found.push(EqualTime {
+                scene: scene.to_owned(),
+                kernel,
+                metric,
+                variable,
+                fixed,
+                default: one(Way::Variable { min_photons }),
+                gather: one(Way::Gather { min_photons }),
+                tables: one(Way::Tables),
+                budgets: budgets(&variables, &fixeds),
+            });
         }
     }
     found
 }
 
-/// The best width of each number of photons.
-fn curve(rows: &[&PictureRow], metric: Metric, is_fixed: bool) -> Vec<CurvePoint> {
+/// The best way of a family for each number of photons.
+fn curve(rows: &[&PictureRow], metric: Metric, family: Family) -> Vec<CurvePoint> {
     along_photons(rows, |sweep, photons| {
-        let chosen = sweep.best(metric, is_fixed)?;
-        point(sweep, metric, photons, chosen.width)
+        let chosen = sweep.best(metric, family)?;
+        point(sweep, metric, photons, chosen.way)
     })
 }
 
-/// Each width over its numbers of photons.
-fn curves(rows: &[&PictureRow], metric: Metric, is_fixed: bool) -> Vec<Vec<CurvePoint>> {
-    let mut widths: Vec<Width> =
-        rows.iter().map(|row| row.width).filter(|width| width.is_fixed() == is_fixed).collect();
-    widths.sort_unstable();
-    widths.dedup();
-    let of_width = |width| along_photons(rows, |sweep, photons| point(sweep, metric, photons, width));
-    widths.into_iter().map(of_width).collect()
+/// Each way of a family over its numbers of photons.
+fn curves(rows: &[&PictureRow], metric: Metric, family: Family) -> Vec<Vec<CurvePoint>> {
+    let mut ways: Vec<Way> = rows.iter().map(|row| row.way).filter(|way| way.family() == family).collect();
+    ways.sort_unstable();
+    ways.dedup();
+    let of_way = |way| along_photons(rows, |sweep, photons| point(sweep, metric, photons, way));
+    ways.into_iter().map(of_way).collect()
 }
 
 /// A point for each number of photons, by increasing time.
@@ -110,14 +128,14 @@ fn along_photons(
     curve
 }
 
-/// A width of one number of photons, if it was tried.
-fn point(sweep: &Sweep<'_>, metric: Metric, photons: u32, width: Width) -> Option<CurvePoint> {
-    let seconds: Vec<f64> = sweep.of(width).iter().map(|row| row.seconds()).collect();
-    let seeds = sweep.errors(width, metric);
+/// A way with one number of photons, if it was tried.
+fn point(sweep: &Sweep<'_>, metric: Metric, photons: u32, way: Way) -> Option<CurvePoint> {
+    let seconds: Vec<f64> = sweep.of(way).iter().map(|row| 1e3 * row.seconds()).collect();
+    let seeds = sweep.errors(way, metric);
     Some(CurvePoint {
         photons,
-        width,
-        seconds: Confidence::of(&seconds)?.mean,
+        way,
+        seconds: Statistics::of(&seconds)?.median_ms / 1e3,
         error: Confidence::of(&seeds)?,
         seeds,
     })
@@ -144,8 +162,8 @@ fn budgets(variables: &[Vec<CurvePoint>], fixeds: &[Vec<CurvePoint>]) -> Vec<Bud
         let ratio = RatioInterval::of(&pairs)?;
         Some(Budget {
             seconds,
-            variable: (variable.width, variable.error),
-            fixed: (fixed.width, fixed.error),
+            variable: (variable.way, variable.error),
+            fixed: (fixed.way, fixed.error),
             ratio,
             winner: Winner::by(&ratio),
         })
@@ -153,19 +171,19 @@ fn budgets(variables: &[Vec<CurvePoint>], fixeds: &[Vec<CurvePoint>]) -> Vec<Bud
     (0..BUDGETS).filter_map(budget).collect()
 }
 
-/// A width at some time.
+/// A way at some time.
 struct AtTime {
-    width: Width,
+    way: Way,
     error: f64,
     seeds: Vec<f64>,
 }
 
-/// The width with the least error at a time; nothing where no curve is defined.
+/// The way with the least error at a time; nothing where no curve is defined.
 fn lowest_at(curves: &[Vec<CurvePoint>], seconds: f64) -> Option<AtTime> {
     let at = |curve: &Vec<CurvePoint>| {
         let count = curve.iter().map(|point| point.seeds.len()).min()?;
         let seeds: Vec<f64> = (0..count).map(|seed| error_at(curve, seed, seconds)).collect::<Option<_>>()?;
-        Some(AtTime { width: curve[0].width, error: geometric_mean(&seeds)?, seeds })
+        Some(AtTime { way: curve[0].way, error: geometric_mean(&seeds)?, seeds })
     };
     curves.iter().filter_map(at).min_by(|a, b| a.error.total_cmp(&b.error))
 }

@@ -2,18 +2,21 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{PictureRow, Width};
+use super::{Family, PictureRow, Way};
 use crate::confidence::Confidence;
-use crate::picture::PictureError;
 
-/// One number of a [`PictureError`], so that less is better.
+/// One number of a [`PictureRow`], so that less is better.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Metric {
-    /// Root mean squared error of indirect light.
+    /// Root mean squared error of indirect light, inside of faces.
     Rmse,
-    /// Relative mean squared error of indirect light.
+    /// Relative mean squared error of indirect light, inside of faces.
     RelativeMse,
+    /// The first, over all pixels: edges of faces, mirrors and glass too.
+    RmseOfAll,
+    /// The second, over all pixels.
+    RelativeMseOfAll,
     /// 1 - SSIM of the whole picture.
     Dissimilarity,
     /// FLIP of the whole picture.
@@ -22,7 +25,14 @@ pub enum Metric {
 
 impl Metric {
     /// All of them.
-    pub const ALL: [Self; 4] = [Self::Rmse, Self::RelativeMse, Self::Dissimilarity, Self::Flip];
+    pub const ALL: [Self; 6] = [
+        Self::Rmse,
+        Self::RelativeMse,
+        Self::RmseOfAll,
+        Self::RelativeMseOfAll,
+        Self::Dissimilarity,
+        Self::Flip,
+    ];
 
     /// Its name, to show.
     #[must_use]
@@ -30,6 +40,8 @@ impl Metric {
         match self {
             Self::Rmse => "RMSE",
             Self::RelativeMse => "relative MSE",
+            Self::RmseOfAll => "RMSE, all pixels",
+            Self::RelativeMseOfAll => "relative MSE, all pixels",
             Self::Dissimilarity => "1 - SSIM",
             Self::Flip => "FLIP",
         }
@@ -37,21 +49,23 @@ impl Metric {
 
     /// The number, 0 for the reference itself.
     #[must_use]
-    pub fn of(self, error: &PictureError) -> f64 {
+    pub fn of(self, row: &PictureRow) -> f64 {
         match self {
-            Self::Rmse => error.rmse,
-            Self::RelativeMse => error.relative_mse,
-            Self::Dissimilarity => 1.0 - error.ssim,
-            Self::Flip => error.flip,
+            Self::Rmse => row.inside.rmse,
+            Self::RelativeMse => row.inside.relative_mse,
+            Self::RmseOfAll => row.error.rmse,
+            Self::RelativeMseOfAll => row.error.relative_mse,
+            Self::Dissimilarity => 1.0 - row.error.ssim,
+            Self::Flip => row.error.flip,
         }
     }
 }
 
-/// One width among those tried, and its error over the seeds.
+/// One way among those tried, and its error over the seeds.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Chosen {
-    /// n, or the radius.
-    pub width: Width,
+    /// With its n or radius.
+    pub way: Way,
     /// Its error by the metric of the comparison.
     pub error: Confidence,
     /// Whether a smaller or larger one that wasn't tried may be better.
@@ -66,50 +80,50 @@ pub(super) struct Sweep<'a> {
 impl<'a> Sweep<'a> {
     pub(super) fn new(rows: impl Iterator<Item = &'a PictureRow>) -> Self {
         let mut rows: Vec<_> = rows.collect();
-        rows.sort_by_key(|row| (row.width, row.seed));
+        rows.sort_by_key(|row| (row.way, row.seed));
         Self { rows }
     }
 
-    /// The rows of one width, by seed.
-    pub(super) fn of(&self, width: Width) -> Vec<&'a PictureRow> {
-        self.rows.iter().copied().filter(|row| row.width == width).collect()
+    /// The rows of one way, by seed.
+    pub(super) fn of(&self, way: Way) -> Vec<&'a PictureRow> {
+        self.rows.iter().copied().filter(|row| row.way == way).collect()
     }
 
-    /// Errors of one width, by seed.
-    pub(super) fn errors(&self, width: Width, metric: Metric) -> Vec<f64> {
-        self.of(width).iter().map(|row| metric.of(&row.error)).collect()
+    /// Errors of one way, by seed.
+    pub(super) fn errors(&self, way: Way, metric: Metric) -> Vec<f64> {
+        self.of(way).iter().map(|row| metric.of(row)).collect()
     }
 
-    /// The widths, without repetition, of those that `wanted` lets pass.
-    fn widths(&self, wanted: impl Fn(Width) -> bool) -> Vec<Width> {
-        let mut widths: Vec<_> =
-            self.rows.iter().map(|row| row.width).filter(|&width| wanted(width)).collect();
-        widths.dedup();
-        widths
+    /// The ways of a family, without repetition.
+    fn ways(&self, family: Family) -> Vec<Way> {
+        let ways = self.rows.iter().map(|row| row.way);
+        let mut ways: Vec<_> = ways.filter(|way| way.family() == family).collect();
+        ways.dedup();
+        ways
     }
 
-    /// The smallest and the largest variable or fixed width; nothing if there is none.
-    pub(super) fn ends(&self, is_fixed: bool) -> Option<(Width, Width)> {
-        let widths = self.widths(|width| width.is_fixed() == is_fixed);
-        Some((*widths.first()?, *widths.last()?))
+    /// The least and the widest way of a family; nothing if there is none.
+    pub(super) fn ends(&self, family: Family) -> Option<(Way, Way)> {
+        let ways = self.ways(family);
+        Some((*ways.first()?, *ways.last()?))
     }
 
-    /// The variable or fixed width with the least mean error over the seeds; nothing if there is none.
-    pub(super) fn best(&self, metric: Metric, is_fixed: bool) -> Option<Chosen> {
-        let widths = self.widths(|width| width.is_fixed() == is_fixed);
-        let errors = widths
+    /// The way of a family with the least mean error over the seeds; nothing if there is none.
+    pub(super) fn best(&self, metric: Metric, family: Family) -> Option<Chosen> {
+        let ways = self.ways(family);
+        let errors = ways
             .iter()
             .enumerate()
-            .filter_map(|(place, &width)| Some((place, Confidence::of(&self.errors(width, metric))?)));
+            .filter_map(|(place, &way)| Some((place, Confidence::of(&self.errors(way, metric))?)));
         let (place, error) = errors.min_by(|(_, a), (_, b)| a.mean.total_cmp(&b.mean))?;
-        let at_end = (place == 0 && !widths[0].is_least()) || place + 1 == widths.len();
-        Some(Chosen { width: widths[place], error, at_end })
+        let is_swept = matches!(family, Family::Variable | Family::Fixed);
+        let at_end = is_swept && ((place == 0 && !ways[0].is_least()) || place + 1 == ways.len());
+        Some(Chosen { way: ways[place], error, at_end })
     }
 
-    /// One variable width, if it was tried.
-    pub(super) fn variable(&self, metric: Metric, min_photons: u32) -> Option<Chosen> {
-        let width = Width::Variable { min_photons };
-        let error = Confidence::of(&self.errors(width, metric))?;
-        Some(Chosen { width, error, at_end: false })
+    /// One way, if it was tried.
+    pub(super) fn one(&self, metric: Metric, way: Way) -> Option<Chosen> {
+        let error = Confidence::of(&self.errors(way, metric))?;
+        Some(Chosen { way, error, at_end: false })
     }
 }

@@ -1,5 +1,5 @@
-//! Errors of pictures: variable radii against the best fixed radius (thesis 2.5, 5.1), for the same photons
-//! and for the same time.
+//! Errors of pictures: light from tables, variable radii and gathers against the best fixed radius (thesis
+//! 2.5, 5.1), for the same photons and for the same time, and their [bias](bias) apart from noise.
 //!
 //! Each scene has a reference of many photons without kernels, of other seeds. Against it stand pictures of
 //! some numbers of photons, with some n and some fixed radii, of some seeds each; all pictures of a seed are
@@ -7,22 +7,29 @@
 //! photons and metric anew, from a sweep that goes on until the best is not at its end. So the comparison
 //! favours the fixed radius: in practice the best one is unknown.
 //!
-//! RMSE and relative MSE are of indirect light, which photons make. SSIM and FLIP are of the whole picture.
-//! The reference's own noise is in all errors, of variable and fixed radii alike, and draws their ratio
-//! towards 1.
+//! RMSE and relative MSE are of indirect light, which photons make: inside of faces, and over all pixels. The
+//! reference's own noise, known from its seeds, is taken away from both. SSIM and FLIP are of the whole
+//! picture; the reference's noise is in them, of all ways alike, and draws their ratios towards 1.
 
+pub mod bias;
+mod coverage;
 mod equal_photons;
 mod equal_time;
 mod metric;
+mod reference;
 mod row;
 mod run;
 mod studio;
+mod targets;
 
+pub use bias::BiasRow;
 pub use equal_photons::{Comparison, EqualPhotons, Winner, equal_photons};
 pub use equal_time::{Budget, CurvePoint, EqualTime, equal_time};
 pub use metric::{Chosen, Metric};
-pub use row::{PictureRow, Width};
-pub use run::{SceneReference, run};
+pub use reference::SceneReference;
+pub use row::{Family, PictureRow, Way};
+pub use run::run;
+pub use targets::targets;
 
 use serde::{Deserialize, Serialize};
 
@@ -51,12 +58,16 @@ pub struct PictureStudy {
     pub kernels: Vec<Kernel>,
     /// Seeds of pictures, from 1 on: independent samples.
     pub seeds: u32,
-    /// Seeds that the reference is the mean of, none of them a picture's; an even number.
+    /// Seeds that the reference is the mean of, none of them a picture's; an even number, 4 at least.
     pub reference_seeds: u32,
     /// Photons of each of these.
     pub reference_photons: u32,
     /// Shadow rays for each area light; the reference's direct light is that of the pictures.
     pub light_samples: u32,
+    /// The number of photons for which bias is tested; nothing is tested if it is none of `photons`.
+    pub bias_photons: u32,
+    /// Seeds of that test, at least 2, none of them a picture's.
+    pub bias_seeds: u32,
 }
 
 impl PictureStudy {
@@ -65,16 +76,18 @@ impl PictureStudy {
     pub fn usual() -> Self {
         Self {
             scenes: Scene::shipped_names().map(str::to_owned).collect(),
-            size: [96; 2],
-            photons: vec![6_000, 24_000, 96_000],
+            size: [256; 2],
+            photons: vec![10_000, 100_000, 1_000_000],
             min_photons: vec![100, 200, 400],
             max_radius: 64,
             fixed: vec![1, 2, 3, 4, 6, 8, 11, 15, 20],
             kernels: vec![Kernel::Silverman],
-            seeds: 3,
-            reference_seeds: 8,
+            seeds: 5,
+            reference_seeds: 32,
             reference_photons: 1_000_000,
             light_samples: 4,
+            bias_photons: 100_000,
+            bias_seeds: 16,
         }
     }
 
@@ -86,8 +99,11 @@ impl PictureStudy {
             size: [48; 2],
             photons: vec![4_000, 16_000],
             min_photons: vec![200, 400],
-            reference_seeds: 4,
-            reference_photons: 200_000,
+            seeds: 2,
+            reference_seeds: 6,
+            reference_photons: 100_000,
+            bias_photons: 16_000,
+            bias_seeds: 3,
             ..Self::usual()
         }
     }
@@ -126,23 +142,28 @@ impl PictureStudy {
         if self.seeds == 0 {
             return refuse("seeds", "0".to_owned(), "give at least 1; an interval takes 2 or more");
         }
-        if self.reference_seeds == 0 || self.reference_seeds % 2 == 1 {
-            let reason = "the reference's noise is found from two halves; give an even number";
+        if self.reference_seeds < 4 || self.reference_seeds % 2 == 1 {
+            let reason = "the reference's noise is found from its seeds; give an even number, 4 at least";
             return refuse("reference_seeds", self.reference_seeds.to_string(), reason);
+        }
+        if self.bias_seeds < 2 {
+            let reason = "a variance takes at least 2";
+            return refuse("bias_seeds", self.bias_seeds.to_string(), reason);
         }
         self.min_photons
             .iter()
-            .try_for_each(|&n| self.settings(Width::Variable { min_photons: n }, self.kernels[0]).validate())
+            .try_for_each(|&n| self.settings(Way::Variable { min_photons: n }, self.kernels[0]).validate())
     }
 
     /// What a picture of the study is drawn with.
-    fn settings(&self, width: Width, kernel: Kernel) -> PictureSettings {
+    fn settings(&self, way: Way, kernel: Kernel) -> PictureSettings {
         let usual = PictureSettings::default();
         PictureSettings {
             size: self.size.into(),
-            min_photons: width.min_photons().unwrap_or(usual.min_photons),
+            min_photons: way.min_photons().unwrap_or(usual.min_photons),
             max_radius: self.max_radius,
-            radius: width.choice(),
+            radius: way.choice(),
+            estimate: way.estimate(),
             kernel,
             light_samples: self.light_samples,
             ..usual
@@ -155,6 +176,8 @@ impl PictureStudy {
 pub struct Found {
     /// What the scenes were compared with.
     pub references: Vec<SceneReference>,
-    /// A row for each picture, in the order of scenes, photons, seeds, kernels and widths.
+    /// A row for each picture, in the order of scenes, photons, seeds, kernels and ways.
     pub rows: Vec<PictureRow>,
+    /// How biased the ways are, scene by scene.
+    pub biases: Vec<BiasRow>,
 }

@@ -25,6 +25,12 @@ const BEST_FIXED: u32 = 2;
 /// Copies of a sample, whose mean counts: one alone is over too soon for a clock.
 const COPIES: u32 = 16;
 
+/// n, MR and the fixed radius.
+pub(super) fn radii() -> [u32; 3] {
+    let PictureSettings { min_photons, max_radius, .. } = PictureSettings::default();
+    [min_photons, max_radius, BEST_FIXED]
+}
+
 /// A stage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Work {
@@ -38,12 +44,13 @@ pub(super) enum Work {
     Flux,
     Tables,
     TablesMoved,
+    Whole,
     Photons,
 }
 
 impl Work {
     /// All of them, the units first.
-    pub(super) const ALL: [Self; 11] = [
+    pub(super) const ALL: [Self; 12] = [
         Self::Copy,
         Self::Points,
         Self::Density,
@@ -54,8 +61,14 @@ impl Work {
         Self::Flux,
         Self::Tables,
         Self::TablesMoved,
+        Self::Whole,
         Self::Photons,
     ];
+
+    /// Whether photons are drawn as kernels.
+    pub(super) fn is_splat(self) -> bool {
+        matches!(self, Self::SplatVariable | Self::SplatFixed)
+    }
 
     pub(super) fn name(self) -> &'static str {
         match self {
@@ -69,6 +82,7 @@ impl Work {
             Self::Flux => "flux",
             Self::Tables => "tables",
             Self::TablesMoved => "tables-moved",
+            Self::Whole => "whole",
             Self::Photons => "photons",
         }
     }
@@ -137,9 +151,16 @@ impl<'a> Rows<'a> {
         })
     }
 
-    /// n, MR and the fixed radius.
-    pub(super) fn radii(&self) -> [u32; 3] {
-        [self.settings.min_photons, self.settings.max_radius, BEST_FIXED]
+    /// Photons that are traced.
+    pub(super) fn photons(&self) -> u32 {
+        self.trace.photons
+    }
+
+    /// All of light from tables, as when the camera has moved, and waits for it.
+    pub(super) fn whole_when_moved(&mut self) -> Result<()> {
+        self.tables.forget_camera();
+        self.tables.count()?;
+        self.tables.spread()?.read().map(drop)
     }
 
     pub(super) fn run(&mut self, timer: &mut Timer, work: Work) -> Result<Sample> {
@@ -159,6 +180,10 @@ impl<'a> Rows<'a> {
             }
             Work::Flux => timer.time(|| self.tables.count()),
             Work::Tables => timer.time(|| self.tables.spread().map(drop)),
+            Work::Whole => timer.time(|| {
+                self.tables.count()?;
+                self.tables.spread().map(drop)
+            }),
             Work::TablesMoved => {
                 self.tables.forget_camera();
                 timer.time(|| self.tables.spread().map(drop))
@@ -217,7 +242,7 @@ impl<'a> Rows<'a> {
             Work::SplatFixed => self.is_whole(work, 1)?,
             Work::Gather => self.is_gathered()?,
             Work::Flux => self.is_flux_right()?,
-            Work::Tables | Work::TablesMoved => self.is_tabled()?,
+            Work::Tables | Work::TablesMoved | Work::Whole => self.is_tabled()?,
             Work::Photons => self.is_told()?,
         })
     }
