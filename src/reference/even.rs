@@ -163,12 +163,12 @@ mod tests {
     fn a_step_keeps_its_edge() {
         let counts: Vec<u32> = (0..80).map(|x| if x < 40 { 100 } else { 800 }).collect();
         let found = row(&counts, 9, 16);
-        // The test of radius r sees the step at the r pixels on both sides of it, capped at 6 variances: of
-        // the 4 r + 1 columns around a pixel, that has to be those of less than a third or so.
+        // Tests of radius r that see the step are those less than r columns from it, all at 6 variances. Of
+        // the 4 r + 1 columns of a box, about a quarter may be theirs: at column 20, 5 of 33 see it with
+        // radius 8, and 3 places of 9 with 16.
         assert_eq!(found[36..44], [1, 1, 0, 0, 0, 0, 1, 1]);
-        let widest_at = |x: usize| found[x];
-        assert_eq!([0, 10, 20, 30, 34].map(widest_at), [16, 8, 4, 4, 2]);
-        assert!(found.iter().eq(found.iter().rev()) || found[..40].is_sorted_by(|a, b| a >= b), "{found:?}");
+        assert_eq!([0, 20, 30, 34].map(|x: usize| found[x]), [8, 8, 4, 2]);
+        assert!(found[..40].is_sorted_by(|a, b| a >= b), "{found:?}");
     }
 
     #[test]
@@ -188,7 +188,8 @@ mod tests {
         let along = |x: u32| found.at(x, 30);
         // 9 of the 25 tests around the spike see it: 6 · 9 / 25 > 1.8; 6 of 25 do not reach that.
         assert_eq!([28, 29, 30, 31, 32].map(along), [1, 0, 0, 0, 1]);
-        assert_eq!(found.at(0, 0), 16);
+        // 25 of the 81 places in the box of radius 32 around a corner see it with radius 16; none does with 8.
+        assert_eq!(found.at(0, 0), 8);
         let mirrored = Image::from_fn(map.size(), |x, y| found.at(60 - x, 60 - y));
         assert!(found == mirrored);
     }

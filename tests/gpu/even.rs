@@ -40,7 +40,7 @@ fn cases() -> Vec<(&'static str, Image<u32>)> {
         ("step", Image::from_fn(size, |x, _| noisy(&mut random, if x < 40 { 2 } else { 16 }))),
         ("ramp", Image::from_fn(size, |x, _| noisy(&mut random, x / 4))),
         ("line", Image::from_fn(size, |x, y| if x == y { 40 } else { random.below(4) })),
-        ("bright", Image::from_fn(size, |_, _| 900_000 + noisy(&mut random, 1000))),
+        ("bright", Image::from_fn(size, |_, _| 800_000 + noisy(&mut random, 1000))),
     ]
 }
 
@@ -52,28 +52,36 @@ fn agree(gl: &Gl, name: &str, density: &Image<u32>, settings: Settings) {
 #[test]
 fn radii_are_those_of_the_definition() {
     for gl in each() {
-        for (name, density) in cases() {
-            for max_radius in [1, 2, 8, 16, 64] {
-                for edges in [Edges::Zero, Edges::Scale] {
-                    agree(&gl, name, &density, even(max_radius, edges));
+        for max_radius in [1, 2, 8, 16, 64] {
+            for edges in [Edges::Zero, Edges::Scale] {
+                let settings = even(max_radius, edges);
+                let mut pipeline =
+                    RadiusPipeline::new(&gl, UVec2::ONE, TextureFormat::R32Uint, settings).unwrap();
+                for (name, density) in cases() {
+                    pipeline.resize(density.size()).unwrap();
+                    let map = upload(&gl, &density, settings.search);
+                    let found = read(pipeline.render(&map).unwrap());
+                    let expected = reference::even(&density, settings.search);
+                    assert_same(&found, &expected, &format!("{name}, {settings:?}"));
                 }
             }
         }
     }
 }
 
+/// Seen in none of the smaller maps: sums of two radii in one number that ran into each other.
 #[test]
 fn large_maps_have_radii_of_all_kinds() {
     let gl = egl();
     let mut random = Random(17);
-    // Noise of a density that grows to the right, with a disc of another, a fine grid, and an empty part.
-    let density = Image::from_fn(UVec2::new(417, 390), |x, y| {
-        let away = UVec2::new(x, y).as_ivec2() - 200;
+    // Noise: a ramp with a disc, a grid and an empty part to the left, and nothing else to the right.
+    let density = Image::from_fn(UVec2::new(520, 400), |x, y| {
+        let away = UVec2::new(x, y).as_ivec2() - 90;
         let mean = match (x, y) {
-            _ if away.length_squared() < 2500 => 24,
+            _ if away.length_squared() < 1600 => 24,
             (0..60, 300..) => 0,
-            (340.., 300..) if x % 8 == 0 => 30,
-            _ => 1 + x / 100,
+            (100..180, 300..) if x % 8 == 0 => 30,
+            _ => 1 + x.min(180) / 60,
         };
         (0..mean).map(|_| random.below(3)).sum()
     });

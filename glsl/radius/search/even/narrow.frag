@@ -1,9 +1,9 @@
 // Departures from an even density of radii 1, 2, 4 and 8 around each pixel, two in a number.
 
-// Of radius 1, and above its bits of radius 4.
+// Of radius 4, and above its bits of radius 1.
 layout(location = 0) out uint of_1_and_4;
 #if LEVELS > 1
-// Of radius 2, and above its bits of radius 8.
+// Of radius 8, and above its bits of radius 2.
 layout(location = 1) out uint of_2_and_8;
 #endif
 
@@ -17,7 +17,7 @@ void main()
     Held narrow = held_in(center, 0);
     for (int level = 0; level < min(LEVELS, NARROW_LEVELS); ++level) {
         Held wide = held_in(center, 1 << level);
-        uint found = departure(narrow, wide, 1 << level) << (level < 2 ? 0 : LOWER_BITS);
+        uint found = departure(narrow, wide, 1 << level) << (level < 2 ? LOWER_BITS : 0);
 #if LEVELS > 1
         if ((level & 1) == 1) {
             of_2_and_8 |= found;

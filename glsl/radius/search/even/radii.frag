@@ -58,7 +58,7 @@ bool is_even(ivec2 center, int level, int first)
 #else
         uint both = sum_in(of_1_and_4, lo, hi);
 #endif
-        steps = level < 2 ? both & ((1u << LOWER_BITS) - 1u) : both >> LOWER_BITS;
+        steps = level < 2 ? both >> LOWER_BITS : both & ((1u << LOWER_BITS) - 1u);
     }
     ivec2 places = hi - lo + 1;
     uvec2 limit = threshold(1 << level);

@@ -6,9 +6,10 @@
 //! their mean over any box takes four fetches. The definition, [`reference::even`](crate::reference::even),
 //! derives the test.
 //!
-//! - Radii up to 8 are tested at each pixel, two of them in one number, whose sums do not meet: 27 bits at the
-//!   most for a box of twice the radius. Wider ones are tested at one pixel in a square of a quarter of the
-//!   radius, and all of them share a texture.
+//! - Radii up to 8 are tested at each pixel, two of them in one number. The wider one has the lower 18 bits,
+//!   as many as its sum over 33 x 33 pixels takes; what is above falls away. Over the 9 x 9 pixels of the
+//!   narrower one nothing is carried into its 14 bits, which hold its sum as well.
+//! - Wider ones are tested at one pixel in a square of a quarter of the radius, and share a texture.
 //! - Cost: five boxes in the first table, up to one a radius in those of departures, two scans of the whole
 //!   map and one of an eighth of it, whatever the density. A mask saves the last pass alone, since pixels
 //!   beside it are tested too; a frame that changed in a rectangle is tested as a whole.
@@ -34,8 +35,8 @@ const WIDE: &str = "wide departures";
 const RADII: &str = "even radii";
 /// The tables of narrow boxes, as the shader of radii knows them.
 const TABLES: [&str; 2] = ["of_1_and_4", "of_2_and_8"];
-/// Bits of the first of two sums in a number: the departures of radius 2 in a box of 9 x 9 pixels.
-const LOWER_BITS: u32 = 14;
+/// Bits of the lower of two sums in a number: those of the departures of radius 8 in a box of 33 x 33 pixels.
+const LOWER_BITS: u32 = 18;
 
 /// The tests of maps of one size.
 #[derive(Debug)]
