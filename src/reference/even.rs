@@ -8,8 +8,9 @@
 //!
 //! Where the wide box is as wrong by its bias as the narrow one is by its noise, the departure is 2 b / (a +
 //! b) in the mean, with a and b the squares of the sides of both boxes ([`even_threshold`]). That of one
-//! pixel is noise itself, so the mean over the box of twice the wide radius decides: the radius of a pixel is
-//! the largest up to which no mean exceeds its threshold. After F. Rousselle, C. Knaus, M. Zwicker, "Adaptive
+//! pixel is noise itself, so the mean over the box of twice the wide radius decides. Where it exceeds the
+//! threshold the radius is no candidate; a second one in a row ends the search, since one alone may be chance.
+//! The radius of a pixel is the largest candidate. After F. Rousselle, C. Knaus, M. Zwicker, "Adaptive
 //! sampling and reconstruction using greedy error minimization" (2011).
 
 use super::{Inside, Radii, Table, total_area};
@@ -26,8 +27,7 @@ pub(crate) const MOST_EVEN_STEPS: u32 = 6 * EVEN_STEPS;
 #[must_use]
 pub fn even(density: &Image<u32>, search: Search) -> Radii {
     let (size, photons) = (density.size(), Table::new(density));
-    let mut radius = Image::filled(size, 0);
-    let mut still = Image::filled(size, 1_u8);
+    let mut found = Image::filled(size, Found { radius: 0, failures: 0 });
     for wide in std::iter::successors(Some(1), |wide| Some(2 * wide)).take_while(|&r| r <= search.max_radius)
     {
         let step = even_step(wide);
@@ -44,16 +44,31 @@ pub fn even(density: &Image<u32>, search: Search) -> Radii {
         });
         let sums = Table::new(&departures);
         let (most, of) = even_threshold(wide);
-        still = Image::from_fn(size, |x, y| {
+        found = Image::from_fn(size, |x, y| {
             let Inside { lo, hi } = Inside::of_box(size, x, y, 2 * wide);
             let places = Inside { lo: lo.map(|first| first.div_ceil(step)), hi: hi / step };
             let sum = sums.count(places);
             let is_even = sum * u64::from(of) <= u64::from(most * EVEN_STEPS) * places.area();
-            if is_even { still.at(x, y) } else { 0 }
+            match found.at(x, y) {
+                ended @ Found { failures: 2.., .. } => ended,
+                _ if is_even => Found { radius: wide, failures: 0 },
+                before => Found { failures: before.failures + 1, ..before },
+            }
         });
-        radius = Image::from_fn(size, |x, y| if still.at(x, y) == 1 { wide } else { radius.at(x, y) });
     }
-    Radii { radius, limited: still }
+    Radii {
+        radius: found.map(|found| found.radius),
+        limited: found.map(|found| u8::from(2 * found.radius > search.max_radius)),
+    }
+}
+
+/// What the radii so far say of a pixel.
+#[derive(Clone, Copy)]
+struct Found {
+    /// The largest candidate.
+    radius: u32,
+    /// Radii after it that are none, in a row.
+    failures: u32,
 }
 
 /// Pixels from one test to the next, along rows and columns: a wide box differs little from that of its

@@ -220,4 +220,24 @@ mod tests {
         assert!(density(&rows)[0].ends_with("variable wins."));
         assert_eq!(density(&[]), [""; 0]);
     }
+
+    #[test]
+    fn the_rule_without_a_choice_stands_beside_both() {
+        let mut rows = vec![
+            row(Width::Holding(10), false, 0.3, 0.02),
+            row(Width::Holding(25), false, 0.4, 0.02),
+            row(Width::Fixed(2), false, 0.1, 0.0),
+            row(Width::Fixed(3), false, 0.9, 0.0),
+        ];
+        assert_eq!(even(&rows), [""; 0]);
+        rows.push(row(Width::Even, false, 0.2, 0.0));
+        let [told] = &even(&rows)[..] else { panic!("a sentence for the one shape") };
+        assert!(
+            told.starts_with("uniform, RMSE: 0.2000 ± 0.0100 by the rule even, without any choice: 0.67 (")
+        );
+        assert!(told.contains(" of the best variable estimate (n = 10) and 2.00 ("), "{told}");
+        assert!(told.ends_with(" of the best fixed one (radius 2)."), "{told}");
+        // Neither kind's best is the even one.
+        assert_eq!(density(&rows).len(), 2);
+    }
 }

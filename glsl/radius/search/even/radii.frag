@@ -1,4 +1,4 @@
-// The widest radius of 0, 1, 2, 4, ... up to which the density around a pixel is even but for noise.
+// The widest radius of 0, 1, 2, 4, ... over which the density around a pixel is even but for noise.
 
 // Columns and rows of the map, in pixels.
 uniform ivec2 map_size;
@@ -70,17 +70,21 @@ void main()
     ivec2 center = min(ivec2(gl_FragCoord.xy), map_size - 1);
     radius = 0u;
     bool goes_on = !needs_none(center);
+    bool was_even = true;
     int first = 0;
+    // One radius that fails alone may be chance; two in a row end the search.
     for (int level = 0; level < LEVELS && goes_on; ++level) {
-        goes_on = is_even(center, level, first);
-        if (goes_on) {
+        bool is_candidate = is_even(center, level, first);
+        if (is_candidate) {
             radius = 1u << level;
         }
+        goes_on = is_candidate || was_even;
+        was_even = is_candidate;
         if (level >= NARROW_LEVELS) {
             first += (map_size.x + (1 << (level - 2)) - 1) >> (level - 2);
         }
     }
 #ifdef LIMITED_MASK
-    limited = goes_on ? 1u : 0u;
+    limited = radius == 1u << (LEVELS - 1) ? 1u : 0u;
 #endif
 }
