@@ -181,8 +181,8 @@ impl MethodOptions {
         let given = [("-n", self.min_photons.is_some()), ("--search", self.search.is_some())];
         match given.into_iter().find(|(_, is_given)| *is_given) {
             Some((option, _)) if self.rule == Rule::Even => bail!(
-                "{option} is for boxes that hold n photons, and the rule even has no n\nhelp: leave it out, or \
-                 take `--rule nearest`"
+                "{option} is for boxes that hold n photons, and the rule even has no n\nhelp: leave it out, \
+                 or take `--rule nearest`"
             ),
             _ => Ok(()),
         }

@@ -46,11 +46,11 @@ pub struct PlainSettings {
     pub max_radius: u32,
     /// What a box holds outside the map: VARIKERNEL_EDGES_... Default VARIKERNEL_EDGES_SCALE.
     pub edges: u32,
-    /// In which order radii are tried: VARIKERNEL_ORDER_... Default VARIKERNEL_ORDER_BRACKETED. Not asked for by
-    /// VARIKERNEL_RULE_EVEN, which refuses VARIKERNEL_ORDER_ADAPTIVE alone.
+    /// In which order radii are tried: VARIKERNEL_ORDER_... Default VARIKERNEL_ORDER_BRACKETED. Not asked for
+    /// by VARIKERNEL_RULE_EVEN, which refuses VARIKERNEL_ORDER_ADAPTIVE alone.
     pub order: u32,
-    /// 1 for a texture that marks the pixels that MR ended, with too few photons or a density that is even still,
-    /// else 0. Default 0.
+    /// 1 for a texture that marks the pixels that MR ended, with too few photons or a density that is even
+    /// still, else 0. Default 0.
     pub limited_mask: u32,
     /// 1 if frames may bring a mask of the pixels that need a radius, else 0. Default 0.
     pub masked: u32,

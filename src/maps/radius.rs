@@ -8,8 +8,8 @@ use crate::gl::{Gl, StateGuard, Target, TargetShape, Texture, TextureFormat, Tex
 use crate::image::Image;
 
 /// The radius of each pixel's box, in pixels: a GL_R32UI texture, from 1 to MR, or 0 where a
-/// [`Mask`](crate::Mask) says that none is needed; by [`Rule::Even`](crate::settings::Rule::Even) from 0 to MR,
-/// and for light from tables from 0 to 64.
+/// [`Mask`](crate::Mask) says that none is needed; from 0 to MR by
+/// [`Rule::Even`](crate::settings::Rule::Even), and from 0 to 64 for light from tables.
 #[derive(Debug)]
 pub struct RadiusMap {
     target: Target,

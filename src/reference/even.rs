@@ -9,8 +9,8 @@
 //! Where the wide box is as wrong by its bias as the narrow one is by its noise, the departure is 2 b / (a +
 //! b) in the mean, with a and b the squares of the sides of both boxes ([`even_threshold`]). That of one
 //! pixel is noise itself, so the mean over the box of twice the wide radius decides. Where it exceeds the
-//! threshold the radius is no candidate; a second one in a row ends the search, since one alone may be chance.
-//! The radius of a pixel is the largest candidate. After F. Rousselle, C. Knaus, M. Zwicker, "Adaptive
+//! threshold the radius is left out; two in a row end the search, since one alone may be chance. The radius
+//! of a pixel is the largest that is not left out. After F. Rousselle, C. Knaus, M. Zwicker, "Adaptive
 //! sampling and reconstruction using greedy error minimization" (2011).
 
 use super::{Inside, Radii, Table, total_area};
@@ -159,8 +159,8 @@ mod tests {
         let mut map = Image::filled(UVec2::splat(6), 0);
         map.set(1, 1, 200);
         // The nine tests that see it are at 6 variances. Of the columns in a box of radius 2, cut to the map,
-        // 3 of 3, 3 of 4, 3 of 5, 2 of 5, 1 of 4 and none belong to these, and rows alike; 6 times the product
-        // may be 1.8, and is just that for 3 / 4 · 2 / 5.
+        // 3 of 3, 3 of 4, 3 of 5, 2 of 5, 1 of 4 and none belong to these, and rows alike; 6 times the
+        // product may be 1.8, and is just that for 3 / 4 · 2 / 5.
         let found = even(&map, search(1, Edges::Scale));
         #[rustfmt::skip]
         assert_eq!(found.radius.values(), [
@@ -203,7 +203,7 @@ mod tests {
         let along = |x: u32| found.at(x, 30);
         // 9 of the 25 tests around the spike see it: 6 · 9 / 25 > 1.8; 6 of 25 do not reach that.
         assert_eq!([28, 29, 30, 31, 32].map(along), [1, 0, 0, 0, 1]);
-        // 25 of the 81 places in the box of radius 32 around a corner see it with radius 16; none does with 8.
+        // 25 of the 81 places in the box of radius 32 around a corner see it with radius 16, none with 8.
         assert_eq!(found.at(0, 0), 8);
         let mirrored = Image::from_fn(map.size(), |x, y| found.at(60 - x, 60 - y));
         assert!(found == mirrored);

@@ -1,4 +1,5 @@
-//! What is asked of the search: the rule, n, MR, edges, method and storage, and beside them the thesis's laboratory.
+//! What is asked of the search: the rule, n, MR, edges, method and storage, and beside them the thesis's
+//! laboratory.
 //!
 //! Plain structs with public fields; [`Settings::default`] is exact and fast, [`Settings::thesis`] is what
 //! the thesis ran.

@@ -159,8 +159,8 @@ static void all_orders(uint32_t state_policy) {
     EXPECT_OK(varikernel_context_destroy(context));
 }
 
-/* 200 photons at column 1, row 1, by the other rule with MR 1: all tests of radius 1 that see them fail as far as a
- * test can, 6 variances, and the mean of a box may be 1.8. So three of the box's ten tests may see them. */
+/* 200 photons at column 1, row 1, by the other rule with MR 1: all tests of radius 1 that see them fail as far as
+ * a test can, 6 variances, and the mean of a box may be 1.8. So three in ten of its tests may see them. */
 static void even_radii(void) {
     static const unsigned char photons[SIDE][SIDE] = {{0}, {0, 200}};
     static const GLuint expected[SIDE][SIDE] = {

@@ -105,8 +105,8 @@ pub(super) fn by_question(overall: &[(Question, Vec<Overall>)]) -> Vec<String> {
     kinds.into_iter().filter_map(plot).collect()
 }
 
-/// Error of an estimate by the mean radius of its boxes: growing ones with and without correction, fixed ones,
-/// and even ones.
+/// Error of an estimate by the mean radius of its boxes: growing ones with and without correction, fixed
+/// ones, and even ones.
 pub(super) fn density(rows: &[DensityRow], shape: Shape) -> String {
     let line = |name: &str, colour, style, is_of: fn(&DensityRow) -> bool| {
         let mut points: Vec<Point> = rows

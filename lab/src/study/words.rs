@@ -59,8 +59,8 @@ pub(super) fn density(rows: &[DensityRow]) -> Vec<String> {
     words
 }
 
-/// For each shape: what the rule of even density, for which nothing is chosen, has for the error of the best n
-/// and of the best fixed radius.
+/// For each shape: the error by the rule of even density, for which nothing is chosen, over those of the best
+/// n and of the best fixed radius.
 pub(super) fn even(rows: &[DensityRow]) -> Vec<String> {
     let (name, measure, place) = MEASURES[0];
     let of_shape = |shape| {
@@ -69,8 +69,8 @@ pub(super) fn even(rows: &[DensityRow]) -> Vec<String> {
         let (growing, _) = best(rows().filter(|row| row.width.is_growing()), measure)?;
         let (fixed, _) = best(rows().filter(|row| row.width.is_fixed()), measure)?;
         Some(format!(
-            "{}, {name}: {} by the rule even, without any choice: {} of the best variable estimate ({}) and {} \
-             of the best fixed one ({}).",
+            "{}, {name}: {} by the rule even, without any choice: {} of the best variable estimate ({}) and \
+             {} of the best fixed one ({}).",
             shape.name(),
             measure(even),
             ratio(even, growing, place)?,

@@ -22,8 +22,9 @@ use crate::settings::{Order, Planning, Rule, Search, Settings};
 pub struct MemoryRequired {
     /// What `new` and `resize` allocate.
     pub at_creation: u64,
-    /// What searches of all other orders of [`Rule::Nearest`](crate::settings::Rule::Nearest) take, each allocated when
-    /// [`set_order`](RadiusPipeline::set_order) or the planner of each frame asks for it the first time.
+    /// What searches of all other orders take, each allocated when
+    /// [`set_order`](RadiusPipeline::set_order) or the planner of each frame asks for it the first time; 0 for
+    /// [`Rule::Even`], which has no order.
     pub other_orders: u64,
     /// What adding photons ([`Changed::Added`](crate::Changed::Added)) takes, from the first time on.
     pub additions: u64,

@@ -1,9 +1,9 @@
 //! The widest box over which the density is even but for noise
 //! ([`Rule::Even`](crate::settings::Rule::Even)): not in the thesis.
 //!
-//! Radii are 0, 1, 2, 4, ... up to MR. How far the box of each is from the density of the one before is tested
-//! in the summed-area table of the photons, and these *departures* are summed in tables of their own, so that
-//! their mean over any box takes four fetches. The definition, [`reference::even`](crate::reference::even),
+//! Radii are 0, 1, 2, 4, ... up to MR. How far the box of each is from the density of the one before is
+//! tested in the summed-area table of the photons, and these *departures* are summed in tables of their own,
+//! so that their mean over any box takes four fetches. The definition, [`reference::even`](crate::reference::even),
 //! derives the test.
 //!
 //! - Radii up to 8 are tested at each pixel, two of them in one number. The wider one has the lower 18 bits,
