@@ -15,12 +15,7 @@
 
 use super::{Inside, Radii, Table, total_area};
 use crate::image::Image;
-use crate::settings::{Edges, Search};
-
-/// Departures are whole numbers of this part of a variance; what is left is cut off.
-pub(crate) const EVEN_STEPS: u32 = 32;
-/// The most that a departure counts, so that one bright pixel does not decide alone: 6 variances.
-pub(crate) const MOST_EVEN_STEPS: u32 = 6 * EVEN_STEPS;
+use crate::settings::{EVEN_STEPS, Edges, MOST_EVEN_STEPS, Search, even_step};
 
 /// For each pixel, the widest radius of 0, 1, 2, 4, ... MR over which the density is even but for noise.
 /// Limited are those that MR ended. n and the order of the search are not asked for.
@@ -71,12 +66,6 @@ struct Found {
     failures: u32,
 }
 
-/// Pixels from one test to the next, along rows and columns: a wide box differs little from that of its
-/// neighbour.
-pub(crate) fn even_step(wide: u32) -> u32 {
-    if wide <= 8 { 1 } else { wide / 4 }
-}
-
 /// The departure of boxes of the radius `wide` and half of it that is still taken for even, as a fraction.
 fn even_threshold(wide: u32) -> (u32, u32) {
     let [a, b] = [wide / 2, wide].map(|radius| (2 * radius + 1).pow(2));
@@ -104,7 +93,7 @@ mod tests {
     use super::*;
 
     fn search(max_radius: u32, edges: Edges) -> Search {
-        Search { max_radius, edges, ..crate::Settings::default().search }
+        Search { max_radius, edges, ..crate::settings::Settings::default().search }
     }
 
     /// Radii of a row, by counts of a map of which all rows are the same.

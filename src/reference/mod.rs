@@ -17,7 +17,6 @@ pub mod tables;
 
 pub use definition::{enough, radius};
 pub use even::even;
-pub(crate) use even::{EVEN_STEPS, MOST_EVEN_STEPS, even_step};
 pub use naive_mipmap::naive_mipmap;
 pub use picture::{Shown, gather, gather_at, photon_density, photon_power, splat};
 pub use summed_area_table::{Table, binary_search, radius_by_table};

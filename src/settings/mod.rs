@@ -24,7 +24,7 @@ pub use laboratory::{Exactness, Laboratory, Matching, SatBuild, SatSamples, Spli
 pub use method::{Method, Storage};
 #[cfg(feature = "scene")]
 pub use picture::{DirectLight, FirstBounce, PictureSettings};
-pub(crate) use question::BRACKET_TILE_SIDE;
+pub(crate) use question::{BRACKET_TILE_SIDE, EVEN_STEPS, MOST_EVEN_STEPS, even_step};
 pub use question::{Edges, MAX_EVEN_RADIUS, MAX_RADIUS_LIMIT, Order, Planning, Rule, Search};
 
 /// Everything that a [`RadiusPipeline`](crate::RadiusPipeline) needs to know beside the map's size.

@@ -7,6 +7,18 @@ pub const MAX_RADIUS_LIMIT: u32 = 32_767;
 /// The largest [`Search::max_radius`] of [`Rule::Even`], in pixels.
 pub const MAX_EVEN_RADIUS: u32 = 64;
 
+/// Steps of a variance in which [`Rule::Even`] tells how far a box is from even; what is left is cut off.
+pub(crate) const EVEN_STEPS: u32 = 32;
+
+/// The most steps that count, so that one bright pixel does not decide alone: 6 variances.
+pub(crate) const MOST_EVEN_STEPS: u32 = 6 * EVEN_STEPS;
+
+/// Pixels from one test of [`Rule::Even`] to the next, along rows and columns: a wide box differs little from
+/// that of its neighbour.
+pub(crate) fn even_step(radius: u32) -> u32 {
+    if radius <= 8 { 1 } else { radius / 4 }
+}
+
 /// Pixels of the side of the tiles whose radii a [`Order::Bracketed`] search bounds first.
 pub(crate) const BRACKET_TILE_SIDE: u32 = 64;
 

@@ -8,7 +8,7 @@ use crate::{Workplace, one_pixel};
 #[test]
 fn even_radii_are_those_of_the_definition() {
     let place = Workplace::with_cornell();
-    for (options, max_radius) in [("", 32), ("-r 64 --edges zero", 64), ("-r 2 --sat-build doubling", 2)] {
+    for (options, widest) in [("", 16), ("-r 64 --edges zero", 16), ("-r 2 --sat-build doubling", 2)] {
         let report =
             place.json(&format!("radius cornell.exr -o radius.npy --rule even --verify --json {options}"));
         assert_eq!(report["settings"]["rule"], "even", "{options}");
@@ -16,7 +16,7 @@ fn even_radii_are_those_of_the_definition() {
         assert_eq!(report["verify_limited"]["wrong_pixels"], 0, "{options}");
         assert_eq!(report["plan"]["exact"], true, "{options}");
         assert!(report["planned"].is_null(), "{options}");
-        assert_eq!(report["radius"]["max"], max_radius, "{options}");
+        assert_eq!(report["radius"]["max"], widest, "{options}");
     }
     let nearest = place.json("radius cornell.exr -o nearest.npy --json");
     assert!(nearest["settings"]["rule"].is_null(), "the usual rule is left out, as it was");

@@ -4,11 +4,11 @@
 uniform ivec2 map_size;
 // Sums of departures of radii 1 and 4.
 uniform usampler2D of_1_and_4;
-#if LEVELS > 1
+#ifdef SEVERAL_LEVELS
 // Sums of departures of radii 2 and 8.
 uniform usampler2D of_2_and_8;
 #endif
-#if LEVELS > NARROW_LEVELS
+#ifdef WIDE_LEVELS
 // Sums of departures of radii from 16 on, all places of a radius beside those of the one before.
 uniform usampler2D of_wide;
 #endif
@@ -44,7 +44,7 @@ bool is_even(ivec2 center, int level, int first)
     ivec2 lo = max(center - reach, ivec2(0));
     ivec2 hi = min(center + reach, map_size - 1);
     uint steps = 0u;
-#if LEVELS > NARROW_LEVELS
+#ifdef WIDE_LEVELS
     if (level >= NARROW_LEVELS) {
         int shift = level - 2;
         lo = (lo + (1 << shift) - 1) >> shift;
@@ -53,7 +53,7 @@ bool is_even(ivec2 center, int level, int first)
     }
 #endif
     if (level < NARROW_LEVELS) {
-#if LEVELS > 1
+#ifdef SEVERAL_LEVELS
         uint both = (level & 1) == 1 ? sum_in(of_2_and_8, lo, hi) : sum_in(of_1_and_4, lo, hi);
 #else
         uint both = sum_in(of_1_and_4, lo, hi);

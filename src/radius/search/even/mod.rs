@@ -27,8 +27,7 @@ use crate::maps::exactness::Plan;
 use crate::maps::{DensityMap, Frame, RadiusMap, Rectangle};
 use crate::radius::tables::scan::{self, Scan};
 use crate::radius::tables::{self, Tables};
-use crate::reference::{EVEN_STEPS, MOST_EVEN_STEPS, even_step};
-use crate::settings::{Edges, MAX_EVEN_RADIUS, Settings};
+use crate::settings::{EVEN_STEPS, Edges, MAX_EVEN_RADIUS, MOST_EVEN_STEPS, Settings, even_step};
 
 const NARROW: &str = "narrow departures";
 const WIDE: &str = "wide departures";
@@ -216,6 +215,8 @@ fn with_levels(source: ShaderSource, settings: &Settings) -> ShaderSource {
     source
         .define("LEVELS", levels(settings))
         .define("NARROW_LEVELS", narrow_levels())
+        .define_if(levels(settings) > 1, "SEVERAL_LEVELS")
+        .define_if(levels(settings) > narrow_levels(), "WIDE_LEVELS")
         .define("LOWER_BITS", LOWER_BITS)
         .define("EVEN_STEPS_LOG2", EVEN_STEPS.ilog2())
 }
