@@ -48,6 +48,18 @@
 #define VARIKERNEL_STATE_DEFAULTS 1
 
 /**
+ * rule: the smallest box that holds at least n photons.
+ */
+#define VARIKERNEL_RULE_NEAREST 0
+
+/**
+ * rule: the widest box over which the density is even but for noise, with a radius of 0, 1, 2, 4, ... MR,
+ * which is a power of two of at most 64. There is no n and no order; with VARIKERNEL_EDGES_ZERO the map's
+ * edge is one of the density.
+ */
+#define VARIKERNEL_RULE_EVEN 1
+
+/**
  * edges: nothing is outside the map.
  */
 #define VARIKERNEL_EDGES_ZERO 0
@@ -248,7 +260,11 @@ typedef struct varikernel_settings {
      */
     uint32_t struct_size;
     /**
-     * n: photons that a box has to hold, at least 1. Default 25.
+     * By which rule a radius is found: VARIKERNEL_RULE_... Default VARIKERNEL_RULE_NEAREST.
+     */
+    uint32_t rule;
+    /**
+     * n: photons that a box has to hold, at least 1. Default 25. Not asked for by VARIKERNEL_RULE_EVEN.
      */
     uint32_t min_photons;
     /**
@@ -260,11 +276,13 @@ typedef struct varikernel_settings {
      */
     uint32_t edges;
     /**
-     * In which order radii are tried: VARIKERNEL_ORDER_... Default VARIKERNEL_ORDER_BRACKETED.
+     * In which order radii are tried: VARIKERNEL_ORDER_... Default VARIKERNEL_ORDER_BRACKETED. Not asked for
+     * by VARIKERNEL_RULE_EVEN, which refuses VARIKERNEL_ORDER_ADAPTIVE alone.
      */
     uint32_t order;
     /**
-     * 1 for a texture that marks the pixels that found too few photons within MR, else 0. Default 0.
+     * 1 for a texture that marks the pixels that MR ended, with too few photons or a density that is even
+     * still, else 0. Default 0.
      */
     uint32_t limited_mask;
     /**
@@ -573,10 +591,10 @@ enum varikernel_status varikernel_pipeline_create(const struct varikernel_contex
  * Finds the radii of a frame: draws only, reads nothing back, waits for nothing.
  *
  * `*radius_texture` is a GL_TEXTURE_2D in GL_R32UI, a usampler2D in your shaders: radii from 1 to MR in
- * pixels, 0 where the mask says that none is needed. `*limited_texture` is one in GL_R8UI that is 1 where MR
- * ended the search with too few photons, or 0 if the settings ask for none; the pointer may be null. Both
- * belong to the pipeline, are complete without a sampler, and hold until its next frame. Take the names anew
- * each frame: textures may take turns.
+ * pixels (by VARIKERNEL_RULE_EVEN from 0 on), 0 where the mask says that none is needed. `*limited_texture` is
+ * one in GL_R8UI that is 1 where MR ended the search, or 0 if the settings ask for none; the pointer may be
+ * null. Both belong to the pipeline, are complete without a sampler, and hold until its next frame. Take the
+ * names anew each frame: textures may take turns.
  *
  * Fails with MISMATCH, INEXACT, SETTING, OUT_OF_MEMORY, CONTEXT_LOST, OPEN_GL, INVALID_ARGUMENT,
  * WRONG_THREAD, NO_CONTEXT; the next frame may succeed.

@@ -111,7 +111,9 @@
 //! | landing | hit, deposit, photon record | where a photon meets a diffuse surface, with its power |
 //! | density map | photon counts, histogram | photons per pixel |
 //! | radius map | adaptive bandwidth | R per pixel: the smallest r >= 1 whose box holds n photons, else MR |
-//! | limited | saturated | a pixel whose box of radius MR still holds too few |
+//! | rule | | by what a radius is found: that, or the widest box of even density, without n |
+//! | departure | | how far a box and one of half its radius are from even, in variances of noise |
+//! | limited | saturated | a pixel whose box of radius MR still holds too few, or is even still |
 //! | SAT | summed-area table, integral image | sums of all pixels up to each: a box takes four texels |
 //! | pyramid | summed mipmap, quadtree of sums | sums of 2 x 2, 4 x 4, ... pixels |
 //! | kernel | filter, footprint | how a photon's light falls off with distance |

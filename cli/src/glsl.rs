@@ -9,7 +9,7 @@ use clap::ValueEnum;
 use serde::Serialize;
 use varikernel::gl::{Interface, ShaderSource, ShaderStage, TextureFormat};
 use varikernel::image::write_atomically;
-use varikernel::settings::{Kernel, KernelRadius, Method, Planning, Settings};
+use varikernel::settings::{Kernel, KernelRadius, Method, Planning, Rule, Settings};
 use varikernel::{MaskMaker, PositionMaker, light, radius, render};
 
 use super::method_options::MethodOptions;
@@ -130,6 +130,7 @@ struct Written {
 }
 
 pub(crate) fn run(args: &Args) -> Result<Outcome> {
+    args.method.check_rule()?;
     let settings = Settings { limited_mask: args.limited_mask, masked: args.mask, ..args.method.settings() };
     settings.validate().map_err(in_words_of_options)?;
     let sources = sources(args, &settings);
@@ -183,11 +184,14 @@ fn named<'a>(sources: &'a [ShaderSource], name: &str) -> Result<&'a ShaderSource
         let near = near_matches(sources, name);
         let near =
             if near.is_empty() { String::new() } else { format!("; the variant has {}", near.join(", ")) };
+        let even = Settings { rule: Rule::Even, ..Settings::default() };
         let elsewhere = methods_with(name);
-        let help = if elsewhere.is_empty() {
-            "list all with `varikernel glsl --list`".to_owned()
-        } else {
+        let help = if !elsewhere.is_empty() {
             format!("add --method {}", elsewhere.join(" or --method "))
+        } else if has(&even, name) {
+            "add --rule even".to_owned()
+        } else {
+            "list all with `varikernel glsl --list`".to_owned()
         };
         anyhow!("{name}: there is no such shader{near}\nhelp: {help}")
     })
@@ -207,11 +211,14 @@ fn near_matches(sources: &[ShaderSource], word: &str) -> Vec<String> {
 
 /// Methods whose usual settings have a shader of that name.
 fn methods_with(name: &str) -> Vec<&'static str> {
-    let has = |method: &Method| {
-        let sources = radius::shader_sources(TextureFormat::R32Uint, &Settings::of(*method));
-        sources.iter().any(|source| source.name() == name)
-    };
-    Method::ALL.into_iter().filter(has).map(Method::name).collect()
+    let has_it = |method: &Method| has(&Settings::of(*method), name);
+    Method::ALL.into_iter().filter(has_it).map(Method::name).collect()
+}
+
+/// Whether a variant has a shader of that name.
+fn has(settings: &Settings, name: &str) -> bool {
+    let sources = radius::shader_sources(TextureFormat::R32Uint, settings);
+    sources.iter().any(|source| source.name() == name)
 }
 
 /// Two lines for each shader: what it does; what it draws to, and its files.

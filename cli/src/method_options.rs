@@ -1,8 +1,9 @@
-//! The options that say what is searched for and how: n, MR, edges, and the methods' variants.
+//! The options that say what is searched for and how: rule, n, MR, edges, and the methods' variants.
 
+use anyhow::{Result, bail};
 use clap::ValueEnum as _;
 use varikernel::settings::{
-    Edges, Faults, Laboratory, Matching, Method, Order, SatBuild, SatSamples, Search, Settings, Split,
+    Edges, Faults, Laboratory, Matching, Method, Order, Rule, SatBuild, SatSamples, Search, Settings, Split,
     Storage, Variation,
 };
 
@@ -11,14 +12,20 @@ use super::numbers::whole_checked_later;
 /// The question and the method; `radius` and `glsl` take the same.
 #[derive(Debug, clap::Args)]
 pub(super) struct MethodOptions {
-    /// n: photons that a box has to hold, at least 1.
-    #[arg(short = 'n', long, default_value_t = 25, value_name = "N")]
+    /// Rule by which a radius is found: nearest (the smallest box that holds n photons), or even (the widest
+    /// box over which the density is even but for noise; there is no n).
+    #[arg(long, value_enum, default_value_t = Rule::Nearest)]
+    #[arg(help_heading = "Question")]
+    pub(super) rule: Rule,
+
+    /// n: photons that a box has to hold, at least 1. [default: 25]
+    #[arg(short = 'n', long, value_name = "N")]
     #[arg(value_parser = whole_checked_later(1..=u32::MAX), allow_negative_numbers = true)]
     #[arg(help_heading = "Question")]
-    pub(super) min_photons: u32,
+    min_photons: Option<u32>,
 
     /// MR: the radius at which the search ends, in pixels, 1 to 32767; pixels that find too few photons get
-    /// it.
+    /// it. By the rule even 1, 2, 4, ... or 64.
     #[arg(short = 'r', long, default_value_t = 32, value_name = "MR")]
     #[arg(value_parser = whole_checked_later(1..=u32::MAX), allow_negative_numbers = true)]
     #[arg(help_heading = "Question")]
@@ -145,15 +152,21 @@ impl MethodOptions {
             faults: self.faults(),
             ..Laboratory::default()
         };
-        let asked = Settings { method, storage: self.storage, laboratory: asked, ..Settings::default() };
+        let usual = Settings::default();
+        let asked = Settings { rule: self.rule, method, storage: self.storage, laboratory: asked, ..usual };
         // Samples are those of the thesis's build, which has its own order as well.
         let usual =
             if self.sat_samples.is_some() { Settings::thesis() } else { asked.with_usual_build_and_order() };
+        let order = match self.rule {
+            // Without effect, but for boxes that a bracketed search alone counts.
+            Rule::Even => Order::Binary,
+            _ => self.search.unwrap_or(usual.search.order),
+        };
         let search = Search {
-            min_photons: self.min_photons,
+            min_photons: self.min_photons.unwrap_or(usual.search.min_photons),
             max_radius: self.max_radius,
             edges: self.edges,
-            order: self.search.unwrap_or(usual.search.order),
+            order,
         };
         let laboratory = Laboratory {
             sat_build: self.sat_build.unwrap_or(usual.laboratory.sat_build),
@@ -163,9 +176,22 @@ impl MethodOptions {
         Settings { search, laboratory, ..asked }
     }
 
+    /// Refuses options that have no meaning for the rule; the library refuses settings.
+    pub(super) fn check_rule(&self) -> Result<()> {
+        let given = [("-n", self.min_photons.is_some()), ("--search", self.search.is_some())];
+        match given.into_iter().find(|(_, is_given)| *is_given) {
+            Some((option, _)) if self.rule == Rule::Even => bail!(
+                "{option} is for boxes that hold n photons, and the rule even has no n\nhelp: leave it out, \
+                 or take `--rule nearest`"
+            ),
+            _ => Ok(()),
+        }
+    }
+
     /// Whether the planner may choose: where nothing else is asked for.
     pub(super) fn is_free(&self) -> bool {
-        matches!(self.method, MethodChoice::Auto)
+        self.rule == Rule::Nearest
+            && matches!(self.method, MethodChoice::Auto)
             && (self.search, self.sat_build, self.sat_samples, self.variation) == (None, None, None, None)
             && self.faults() == Faults::NONE
             && self.storage == Storage::U32

@@ -11,6 +11,7 @@ use varikernel::image::{check_writable, write_atomically};
 use varikernel_lab::study::{self, Study, StudySettings};
 
 use super::bench::targets;
+use super::numbers::whole;
 use super::saving::{Autosave, Resume, how_to_go_on};
 use super::share_bar::ShareBar;
 use super::{Outcome, device, output, real_map};
@@ -58,17 +59,24 @@ struct Extent {
     /// Every size with every n and MR, for hours on a software renderer.
     #[arg(long, conflicts_with = "quick")]
     full: bool,
+
+    /// Seeds of each picture; errors are told with their intervals [default: 5; 2 with --quick].
+    #[arg(long, value_name = "NUMBER", value_parser = whole(2..=1000))]
+    #[arg(allow_negative_numbers = true)]
+    seeds: Option<u32>,
 }
 
 impl Extent {
     fn settings(&self) -> StudySettings {
-        if self.quick {
+        let mut settings = if self.quick {
             StudySettings::quick()
         } else if self.full {
             StudySettings::full()
         } else {
             StudySettings::usual()
-        }
+        };
+        settings.pictures.seeds = self.seeds.unwrap_or(settings.pictures.seeds);
+        settings
     }
 }
 

@@ -15,6 +15,7 @@ pub(crate) fn in_words_of_options(error: Error) -> anyhow::Error {
 /// The option that gives a field of the library's settings.
 fn option_of(field: &str) -> String {
     match field {
+        "faults" => "--fault".to_owned(),
         "order" => "--search".to_owned(),
         "masked" => "--mask".to_owned(),
         _ => format!("--{}", field.replace('_', "-")),

@@ -12,6 +12,8 @@
 //!    stays there (`f32-total`), and a pyramid or a brute-force sum while each box does. In f16, the same
 //!    holds of 2^11 (`f16-total`).
 //!
+//! The rule of even density compares counts that are not clamped: fact 1 alone is for it.
+//!
 //! The scaled test S T >= n I needs products only where S < n, so they fit 32 bits while T n < 2^32; past
 //! that the shaders multiply in two words (`wide-products`).
 //!
@@ -24,7 +26,7 @@ use glam::UVec2;
 
 use crate::error::{Error, Result};
 use crate::image::Image;
-use crate::settings::{Exactness, Faults, Method, Order, Search, Settings, Storage};
+use crate::settings::{Exactness, Faults, Method, Order, Rule, Search, Settings, Storage};
 
 /// Upper bounds for the sums in a density map, and the question that they were found for; what is not known
 /// is [`u64::MAX`].
@@ -111,15 +113,16 @@ impl CountBounds {
     /// The bound for any box that `settings` can ask for.
     fn box_of(&self, settings: &Settings) -> u64 {
         // The naive mipmap's last block is larger than a box of MR.
-        let holds = settings.search.largest_counted_radius() <= self.max_radius
-            && settings.method != Method::NaiveMipmap;
+        let holds =
+            largest_counted_radius(settings) <= self.max_radius && settings.method != Method::NaiveMipmap;
         if holds { self.densest_box.min(self.total) } else { self.total }
     }
 
-    /// The same with each count clamped to n.
+    /// The same with each count clamped to n, which [`Rule::Even`] does not have.
     fn clamped_box_of(&self, settings: &Settings) -> u64 {
         let search = settings.search;
-        let holds = search.largest_counted_radius() <= self.max_radius
+        let holds = settings.rule == Rule::Nearest
+            && search.largest_counted_radius() <= self.max_radius
             && search.min_photons <= self.min_photons
             && settings.method != Method::NaiveMipmap;
         if holds { self.densest_clamped_box } else { u64::MAX }
@@ -159,13 +162,18 @@ pub fn plan(settings: &Settings, size: UVec2, bounds: CountBounds) -> Result<Pla
         (Method::AveragedMipmap, _) => Ok(unclamped),
         (_, Storage::U32 | Storage::U16) => {
             let (bits, limit, remedy) = match (settings.storage, search.order) {
+                _ if settings.rule == Rule::Even => (32, U32_MAX, "lower MR, or scale the counts down"),
                 (Storage::U16, _) => (16, U16_MAX, "keep the table in u32 (storage u32), or lower n or MR"),
                 (_, Order::Bracketed) => {
                     (32, U32_MAX, "search in binary order, whose boxes are smaller, or lower n or MR")
                 }
                 _ => (32, U32_MAX, "lower n or MR, or scale the counts down"),
             };
-            let clamped_by_n = largest_area(settings, size).saturating_mul(search.min_photons.into());
+            let clamped_by_n = match settings.rule {
+                Rule::Nearest => largest_area(settings, size).saturating_mul(search.min_photons.into()),
+                // A larger count is another density.
+                Rule::Even => u64::MAX,
+            };
             let clamped_box = clamped_by_n.min(bounds.clamped_box_of(settings));
             if densest_box <= limit {
                 Ok(unclamped)
@@ -221,9 +229,17 @@ pub(crate) fn needs_wide_products(settings: &Settings) -> bool {
     largest_area(settings, UVec2::MAX) * u64::from(settings.search.min_photons) > U32_MAX
 }
 
+/// The radius that no counted box exceeds in area.
+fn largest_counted_radius(settings: &Settings) -> u32 {
+    match settings.rule {
+        Rule::Nearest => settings.search.largest_counted_radius(),
+        Rule::Even => settings.search.max_radius,
+    }
+}
+
 /// The largest T of the search, cut to the map where the area of a sum matters.
 fn largest_area(settings: &Settings, size: UVec2) -> u64 {
-    let radius = u64::from(settings.search.largest_counted_radius());
+    let radius = u64::from(largest_counted_radius(settings));
     let longest = match settings.method {
         // Blocks of side 2^l with 2^(l-1) < 2 MR.
         Method::NaiveMipmap => 4 * radius,

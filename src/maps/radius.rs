@@ -8,7 +8,8 @@ use crate::gl::{Gl, StateGuard, Target, TargetShape, Texture, TextureFormat, Tex
 use crate::image::Image;
 
 /// The radius of each pixel's box, in pixels: a GL_R32UI texture, from 1 to MR, or 0 where a
-/// [`Mask`](crate::Mask) says that none is needed; for light from tables from 0 to 64.
+/// [`Mask`](crate::Mask) says that none is needed; from 0 to MR by
+/// [`Rule::Even`](crate::settings::Rule::Even), and from 0 to 64 for light from tables.
 #[derive(Debug)]
 pub struct RadiusMap {
     target: Target,
@@ -69,8 +70,8 @@ impl RadiusMap {
         self.target.texture().name()
     }
 
-    /// The GL_R8UI texture that is 1 where MR ended the search with too few photons (where the radius is
-    /// saturated), if it was requested.
+    /// The GL_R8UI texture that is 1 where MR ended the search (where the radius is saturated), if it was
+    /// requested.
     #[must_use]
     pub fn limited_texture(&self) -> Option<glow::Texture> {
         self.limited().map(Texture::name)

@@ -22,7 +22,7 @@ use crate::gl::{
 use crate::maps::exactness::{self, Plan};
 use crate::maps::{DensityMap, RadiusMap};
 use crate::radius::tables::{self, Tables};
-use crate::settings::{Edges, Exactness, Faults, Laboratory, Method, Settings};
+use crate::settings::{Exactness, Faults, Laboratory, Method, Rule, Settings};
 
 const RADII: &str = "certify radii";
 const ENTRIES: &str = "certify entries";
@@ -48,9 +48,19 @@ impl Certificate {
     /// Refuses settings whose results are not proved by this.
     ///
     /// # Errors
-    /// [`Error::Setting`] for other methods than the summed-area table, whose boxes cost the same at any
-    /// radius.
+    /// [`Error::Setting`] for another rule than [`Rule::Nearest`], and for other methods than the summed-area
+    /// table, whose boxes cost the same at any radius.
     pub fn check_possible(settings: &Settings) -> Result<()> {
+        if settings.rule != Rule::Nearest {
+            return Err(Error::Setting {
+                name: "rule",
+                value: settings.rule.name().to_owned(),
+                reason:
+                    "two boxes certify a radius that is the smallest to hold n; compare this one with its \
+                         definition"
+                        .to_owned(),
+            });
+        }
         if settings.method == Method::SummedAreaTable {
             return Ok(());
         }
@@ -185,12 +195,9 @@ pub(crate) fn sources(density: TextureFormat, settings: &Settings) -> Vec<Shader
 }
 
 fn radii_source(density: TextureFormat, settings: &Settings, with_limited: bool) -> ShaderSource {
-    let source = ShaderSource::new(RADII)
-        .variant_if(with_limited, "limited")
-        .define_if(settings.search.edges == Edges::Zero, "EDGES_ZERO")
-        .define_if(exactness::needs_wide_products(settings), "WIDE_PRODUCTS")
-        .define_if(with_limited, "LIMITED_MASK")
-        .file(glsl!("common/enough.glsl"));
+    let source =
+        ShaderSource::new(RADII).variant_if(with_limited, "limited").define_if(with_limited, "LIMITED_MASK");
+    let source = tables::edge_rule(source, settings);
     tables::counter(source, density, &faultless(settings)).file(glsl!("radius/certificate/radii.frag"))
 }
 

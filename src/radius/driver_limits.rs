@@ -16,7 +16,7 @@ use std::ops::RangeInclusive;
 use crate::error::{Error, Result};
 use crate::gl::DeviceInfo;
 use crate::radius::tables;
-use crate::settings::{Matching, Method, Order, Settings, Variation};
+use crate::settings::{Matching, Method, Order, Rule, Settings, Variation};
 
 const LLVMPIPE_TURNS: u64 = 65_535;
 
@@ -38,7 +38,8 @@ pub(crate) fn passes(device: &DeviceInfo, settings: &Settings) -> Result<Vec<Ran
         });
     }
     let max_radius = settings.search.max_radius;
-    if !device.is_llvmpipe() || settings.method == Method::NaiveMipmap {
+    let has_short_loops = settings.method == Method::NaiveMipmap || settings.rule == Rule::Even;
+    if !device.is_llvmpipe() || has_short_loops {
         return Ok(vec![1..=max_radius]);
     }
     let (ranges, most_turns) = match settings.search.order {

@@ -1,12 +1,14 @@
 //! The same in plain Rust, slow and obvious, without OpenGL: the definition that everything else is compared
 //! with.
 //!
-//! [`radius`] is the definition; [`radius_by_table`] gives the same for large maps. [`pyramid`],
+//! [`radius`] is the definition; [`radius_by_table`] gives the same for large maps. [`even`] is that of the
+//! other rule, [`Rule::Even`](crate::settings::Rule::Even). [`pyramid`],
 //! [`naive_mipmap`] and [`as_printed`] mirror what those methods do step by step, so that fetches can be
 //! counted and faults predicted.
 
 pub mod as_printed;
 mod definition;
+mod even;
 mod naive_mipmap;
 mod picture;
 pub mod pyramid;
@@ -14,6 +16,7 @@ mod summed_area_table;
 pub mod tables;
 
 pub use definition::{enough, radius};
+pub use even::even;
 pub use naive_mipmap::naive_mipmap;
 pub use picture::{Shown, gather, gather_at, photon_density, photon_power, splat};
 pub use summed_area_table::{Table, binary_search, radius_by_table};
@@ -25,9 +28,9 @@ use crate::image::Image;
 /// The result of a search for each pixel.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Radii {
-    /// The radius, from 1 to MR.
+    /// The radius, from 1 to MR; by [`even`] from 0 on.
     pub radius: Image<u32>,
-    /// 1 where MR ended the search with too few photons, else 0.
+    /// 1 where MR ended the search with too few photons, or with a density that is still even; else 0.
     pub limited: Image<u8>,
 }
 

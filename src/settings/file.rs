@@ -2,14 +2,16 @@
 //! them.
 
 use super::{
-    Exactness, Faults, Laboratory, Matching, Method, Planning, SatBuild, SatSamples, Search, Settings, Split,
-    Storage, Variation,
+    Exactness, Faults, Laboratory, Matching, Method, Planning, Rule, SatBuild, SatSamples, Search, Settings,
+    Split, Storage, Variation,
 };
 
 /// All fields in the order of a file.
 #[derive(serde::Serialize, serde::Deserialize)]
 #[serde(rename = "Settings")]
 pub(super) struct Fields {
+    #[serde(default, skip_serializing_if = "Rule::is_usual")]
+    rule: Rule,
     search: Search,
     method: Method,
     split: Split,
@@ -30,9 +32,10 @@ pub(super) struct Fields {
 
 impl From<Settings> for Fields {
     fn from(settings: Settings) -> Self {
-        let Settings { search, method, storage, limited_mask, masked, planning, laboratory } = settings;
+        let Settings { rule, search, method, storage, limited_mask, masked, planning, laboratory } = settings;
         let Laboratory { split, matching, sat_build, sat_samples, variation, faults, exactness } = laboratory;
         Self {
+            rule,
             search,
             method,
             split,
@@ -53,9 +56,9 @@ impl From<Settings> for Fields {
 impl From<Fields> for Settings {
     fn from(fields: Fields) -> Self {
         let Fields { split, matching, sat_build, sat_samples, variation, faults, exactness, .. } = fields;
-        let Fields { search, method, storage, limited_mask, masked, planning, .. } = fields;
+        let Fields { rule, search, method, storage, limited_mask, masked, planning, .. } = fields;
         let laboratory = Laboratory { split, matching, sat_build, sat_samples, variation, faults, exactness };
-        Self { search, method, storage, limited_mask, masked, planning, laboratory }
+        Self { rule, search, method, storage, limited_mask, masked, planning, laboratory }
     }
 }
 
@@ -81,6 +84,7 @@ mod tests {
     #[test]
     fn what_is_unusual_comes_back() {
         let settings = Settings {
+            rule: Rule::Even,
             masked: true,
             planning: Planning::EachFrame,
             laboratory: Laboratory {
@@ -92,6 +96,7 @@ mod tests {
             ..Settings::thesis()
         };
         let text = serde_json::to_string(&settings).expect("plain");
+        assert!(text.starts_with(r#"{"rule":"even","search":"#), "{text}");
         assert!(text.ends_with(r#""limited_mask":false,"masked":true,"planning":"each-frame"}"#), "{text}");
         assert_eq!(serde_json::from_str::<Settings>(&text).expect("a file"), settings);
     }

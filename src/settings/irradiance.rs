@@ -1,6 +1,6 @@
 //! What is asked of an [`IrradiancePipeline`](crate::IrradiancePipeline).
 
-use super::{Kernel, KernelRadius, MAX_PICTURE_RADIUS, Search, Settings};
+use super::{Kernel, KernelRadius, MAX_PICTURE_RADIUS, Rule, Search, Settings};
 use crate::error::{Error, Result};
 
 /// How photons become irradiance.
@@ -78,6 +78,16 @@ impl IrradianceSettings {
                 name: "masked",
                 value: "true".to_owned(),
                 reason: "a kernel needs the radius of every pixel with a photon".to_owned(),
+            });
+        }
+        if self.radii.rule != Rule::Nearest {
+            return Err(Error::Setting {
+                name: "rule",
+                value: self.radii.rule.name().to_owned(),
+                reason:
+                    "it knows of densities alone, and light has surfaces as well; light from tables tests \
+                         for the same within each face"
+                        .to_owned(),
             });
         }
         match self.radius {

@@ -1,4 +1,5 @@
-//! What is asked of the search: n, MR, edges, method and storage, and beside them the thesis's laboratory.
+//! What is asked of the search: the rule, n, MR, edges, method and storage, and beside them the thesis's
+//! laboratory.
 //!
 //! Plain structs with public fields; [`Settings::default`] is exact and fast, [`Settings::thesis`] is what
 //! the thesis ran.
@@ -23,14 +24,16 @@ pub use laboratory::{Exactness, Laboratory, Matching, SatBuild, SatSamples, Spli
 pub use method::{Method, Storage};
 #[cfg(feature = "scene")]
 pub use picture::{DirectLight, FirstBounce, PictureSettings};
-pub(crate) use question::BRACKET_TILE_SIDE;
-pub use question::{Edges, MAX_RADIUS_LIMIT, Order, Planning, Search};
+pub(crate) use question::{BRACKET_TILE_SIDE, EVEN_STEPS, MOST_EVEN_STEPS, even_step};
+pub use question::{Edges, MAX_EVEN_RADIUS, MAX_RADIUS_LIMIT, Order, Planning, Rule, Search};
 
 /// Everything that a [`RadiusPipeline`](crate::RadiusPipeline) needs to know beside the map's size.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(from = "file::Fields", into = "file::Fields"))]
 pub struct Settings {
+    /// By which rule radii are found.
+    pub rule: Rule,
     /// The question.
     pub search: Search,
     /// How boxes are counted.
@@ -52,6 +55,7 @@ impl Default for Settings {
     /// The summed-area table in u32, built by a scan, with a bracketed search: exact, for n = 25 and MR = 32.
     fn default() -> Self {
         Self {
+            rule: Rule::Nearest,
             search: Search { min_photons: 25, max_radius: 32, edges: Edges::Scale, order: Order::Bracketed },
             method: Method::SummedAreaTable,
             storage: Storage::U32,

@@ -1,6 +1,6 @@
 //! What choices are called in options, tables and files.
 
-use super::{Edges, Method, Order, SatBuild, Storage, Variation};
+use super::{Edges, Method, Order, Rule, SatBuild, Storage, Variation};
 
 impl Method {
     /// Its name.
@@ -12,6 +12,17 @@ impl Method {
             Self::AveragedMipmap => "averaged-mipmap",
             Self::Pyramid => "pyramid",
             Self::SummedAreaTable => "sat",
+        }
+    }
+}
+
+impl Rule {
+    /// Its name.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Nearest => "nearest",
+            Self::Even => "even",
         }
     }
 }
@@ -91,6 +102,7 @@ mod tests {
             }
         }
         same(&Method::ALL, Method::name);
+        same(&[Rule::Nearest, Rule::Even], Rule::name);
         same(&Order::ALL, Order::name);
         same(&Variation::ALL, Variation::name);
         same(&[SatBuild::Doubling, SatBuild::Scan], SatBuild::name);

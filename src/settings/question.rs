@@ -1,10 +1,54 @@
-//! The question: n, MR, what counts outside the map, and the order in which radii are tried.
+//! The question: by which rule a radius is found, n, MR, what counts outside the map, and the order in which
+//! radii are tried.
 
 /// The largest possible [`Search::max_radius`]: the area (2 MR + 1)² still fits 32 bits.
 pub const MAX_RADIUS_LIMIT: u32 = 32_767;
 
+/// The largest [`Search::max_radius`] of [`Rule::Even`], in pixels.
+pub const MAX_EVEN_RADIUS: u32 = 64;
+
+/// Steps of a variance in which [`Rule::Even`] tells how far a box is from even; what is left is cut off.
+pub(crate) const EVEN_STEPS: u32 = 32;
+
+/// The most steps that count, so that one bright pixel does not decide alone: 6 variances.
+pub(crate) const MOST_EVEN_STEPS: u32 = 6 * EVEN_STEPS;
+
+/// Pixels from one test of [`Rule::Even`] to the next, along rows and columns: a wide box differs little from
+/// that of its neighbour.
+pub(crate) fn even_step(radius: u32) -> u32 {
+    if radius <= 8 { 1 } else { radius / 4 }
+}
+
 /// Pixels of the side of the tiles whose radii a [`Order::Bracketed`] search bounds first.
 pub(crate) const BRACKET_TILE_SIDE: u32 = 64;
+
+/// By which rule a pixel's radius is found.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
+#[non_exhaustive]
+pub enum Rule {
+    /// The smallest box that holds at least n photons (thesis 1.3).
+    #[default]
+    Nearest,
+    /// The widest box over which the density is even but for noise, by a test that is pooled over the pixels
+    /// around; there is no n.
+    ///
+    /// Radii are 0, 1, 2, 4, ... up to MR, a power of two of at most [`MAX_EVEN_RADIUS`].
+    /// [`Search::min_photons`] and [`Search::order`] are not asked for. With [`Edges::Scale`] densities are
+    /// those of the pixels inside the map; with [`Edges::Zero`] the map's edge is one of the density.
+    /// [`reference::even`](crate::reference::even) is the definition.
+    Even,
+}
+
+impl Rule {
+    /// Whether it is the usual one, which files leave out.
+    #[cfg(feature = "serde")]
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde calls it so")]
+    pub(super) fn is_usual(&self) -> bool {
+        *self == Self::default()
+    }
+}
 
 /// The question: the smallest radius whose box holds at least n photons (thesis 1.3).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

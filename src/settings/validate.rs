@@ -1,6 +1,9 @@
 //! Which settings go together.
 
-use super::{Faults, Laboratory, MAX_RADIUS_LIMIT, Method, Order, SatBuild, Search, Settings, Variation};
+use super::{
+    Faults, Laboratory, MAX_EVEN_RADIUS, MAX_RADIUS_LIMIT, Method, Order, Planning, Rule, SatBuild, Search,
+    Settings, Storage, Variation,
+};
 use crate::error::{Error, Result};
 
 /// The largest [`Search::max_radius`] of the naive mipmap, whose blocks have up to four times that side.
@@ -19,6 +22,9 @@ impl Settings {
         self.validate_question()?;
         self.validate_storage()?;
         self.validate_order()?;
+        if self.rule == Rule::Even {
+            self.validate_even()?;
+        }
         self.laboratory.variation.map_or(Ok(()), |variation| self.validate_variation(variation))
     }
 
@@ -46,6 +52,47 @@ impl Settings {
                      block must fit 32 bits"
                 ),
             );
+        }
+        Ok(())
+    }
+
+    /// What goes with [`Rule::Even`].
+    fn validate_even(&self) -> Result<()> {
+        let max_radius = self.search.max_radius;
+        if max_radius > MAX_EVEN_RADIUS || !max_radius.is_power_of_two() {
+            return refuse(
+                "max_radius",
+                max_radius.to_string(),
+                format!("the rule even tries radii of 0, 1, 2, 4, ...: give 1, 2, 4, ... {MAX_EVEN_RADIUS}"),
+            );
+        }
+        if self.method != Method::SummedAreaTable {
+            return refuse(
+                "method",
+                self.method.name(),
+                "the rule even counts boxes of all sizes in the summed-area table alone; choose that method",
+            );
+        }
+        if self.storage != Storage::U32 {
+            return refuse(
+                "storage",
+                self.storage.name(),
+                "the rule even decides in whole numbers of 32 bits; keep the sums in u32",
+            );
+        }
+        if self.planning != Planning::AsAsked {
+            return refuse(
+                "planning",
+                "each-frame",
+                "it chooses the order in which radii are tried, and the rule even has none",
+            );
+        }
+        let Laboratory { variation, faults, .. } = self.laboratory;
+        if let Some(variation) = variation {
+            return refuse("variation", variation.name(), "it is for the rule nearest");
+        }
+        if faults != Faults::NONE {
+            return refuse("faults", "of the listings", "they are of the rule nearest");
         }
         Ok(())
     }

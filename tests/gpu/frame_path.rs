@@ -23,6 +23,7 @@ use varikernel::{
     RadiusPipeline, StatePolicy, reference,
 };
 
+use crate::even::even;
 use crate::host_picture::HostPicture;
 use crate::support::{planned, random_map, search, working_candidates};
 
@@ -238,12 +239,12 @@ fn radius_pipelines(gl: &Gl) {
     let map = upload(gl);
     let mask = Mask::upload(gl, &Image::filled(SIZE, 1)).unwrap();
     let expected = reference::radius_by_table(&random_map(SIZE.x, SIZE.y, 4), question());
-    for method in Method::ALL {
-        let settings = Settings { search: question(), method, ..Settings::default() };
+    let of_methods = Method::ALL.map(|method| Settings { search: question(), method, ..Settings::default() });
+    for settings in of_methods.into_iter().chain([even(16, Edges::Scale)]) {
         let mut pipeline = RadiusPipeline::new(gl, SIZE, map.format(), settings).unwrap();
         for _ in 0..2 {
             let log = log_of(|| pipeline.render(&map).unwrap().texture());
-            check(gl, &format!("{method:?}"), &log);
+            check(gl, &format!("{:?} {:?}", settings.rule, settings.method), &log);
         }
     }
     let mut pipeline =

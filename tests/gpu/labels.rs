@@ -10,11 +10,12 @@ use glam::UVec2;
 use glow::HasContext as _;
 use varikernel::gl::Timer;
 use varikernel::measure::{Unit, UnitPass};
-use varikernel::settings::{Edges, Laboratory, Method, Order, SatBuild, Search, Settings};
+use varikernel::settings::{Edges, Laboratory, Method, Order, Rule, SatBuild, Search, Settings};
 use varikernel::{
     Changed, CountBounds, DensityMap, Frame, Gl, Image, Mask, MaskMaker, RadiusMap, RadiusPipeline, reference,
 };
 
+use crate::even::even;
 use crate::support::{planned, random_map, search, working_candidates};
 
 const SIZE: UVec2 = UVec2::new(37, 20);
@@ -119,12 +120,15 @@ fn every_object_of_the_library_has_a_name() {
                 ..settings
             })
         })
+        .chain([even(32, Edges::Scale)])
         .map(|settings| RadiusPipeline::new(gl, SIZE, map.format(), settings).unwrap())
         .collect();
     for pipeline in &mut pipelines {
         pipeline.render(&map).unwrap();
         // Allocates what a proof needs, where one is possible.
-        assert_eq!(pipeline.certify(&map).is_ok(), pipeline.settings().method == Method::SummedAreaTable);
+        let Settings { rule, method, .. } = *pipeline.settings();
+        let is_certified = (rule, method) == (Rule::Nearest, Method::SummedAreaTable);
+        assert_eq!(pipeline.certify(&map).is_ok(), is_certified);
     }
     let mut masked = RadiusPipeline::new(gl, SIZE, map.format(), settings()).unwrap();
     for changed in [Changed::Everything, Changed::Added] {

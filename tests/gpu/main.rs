@@ -9,6 +9,7 @@ mod calls;
 mod certificate;
 mod density;
 mod driver;
+mod even;
 mod exactness;
 mod faults;
 mod frame_path;

@@ -15,6 +15,7 @@ use varikernel::{
 
 use crate::calls::{Calls, counted};
 use crate::driver;
+use crate::even::even;
 use crate::host_picture::HostPicture;
 use crate::support::{egl, exact_variants, planned, random_map, search, sparse_map};
 
@@ -71,6 +72,7 @@ fn memory_is_what_is_allocated() {
     let long = search(9, 100, Edges::Scale);
     let long = Search { order: Order::Forward, ..long };
     variants.push(Settings { search: long, ..Settings::of(Method::BruteForce) });
+    variants.extend([1, 4, 16, 64].map(|max_radius| even(max_radius, Edges::Scale)));
     for settings in variants.clone() {
         variants.push(Settings { limited_mask: !settings.limited_mask, masked: true, ..settings });
     }

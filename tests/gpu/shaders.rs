@@ -16,6 +16,7 @@ use varikernel::settings::{
 };
 use varikernel::{CountBounds, DensityMap, Gl, MaskMaker, PositionMaker, RadiusPipeline, context, reference};
 
+use crate::even::even;
 use crate::support::{planned, random_map, search, working_candidates};
 
 const CORE_COMMANDS: &str = include_str!("../gl33-core-commands.txt");
@@ -97,6 +98,17 @@ pub(crate) fn all_settings() -> Vec<Settings> {
                     }
                 }
             }
+        }
+    }
+    for max_radius in [1, 2, 8, 16, 64] {
+        for edges in [Edges::Zero, Edges::Scale] {
+            let usual = even(max_radius, edges);
+            let doubling = Laboratory { sat_build: SatBuild::Doubling, ..usual.laboratory };
+            all.extend([
+                usual,
+                Settings { masked: true, limited_mask: false, ..usual },
+                Settings { laboratory: doubling, ..usual },
+            ]);
         }
     }
     all.retain(|settings| settings.validate().is_ok());

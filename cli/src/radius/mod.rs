@@ -13,7 +13,7 @@ use varikernel::image::{
 };
 use varikernel::radius::Census;
 use varikernel::radius::planner::{self, Decision};
-use varikernel::settings::{Exactness, Laboratory, Settings, Storage};
+use varikernel::settings::{Exactness, Laboratory, Rule, Settings, Storage};
 use varikernel::{
     Certificate, CountBounds, DensityMap, Error, Frame, Image, Mask, RadiusPipeline, reference,
 };
@@ -24,7 +24,7 @@ use super::words::in_words_of_options;
 use super::{Outcome, device, output};
 use report::{MapReport, Report, Timing};
 
-/// Find, for each pixel, the smallest box that holds at least n photons.
+/// Find, for each pixel, the smallest box that holds at least n photons, or the widest that is even.
 #[derive(Debug, clap::Args)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
 pub(crate) struct Args {
@@ -57,7 +57,8 @@ pub(crate) struct Args {
     #[arg(help_heading = "Exactness")]
     certify: bool,
 
-    /// Also write a map that is 1 where MR ended the search with too few photons, else 0.
+    /// Also write a map that is 1 where MR ended the search with too few photons (by the rule even: with a
+    /// density that is even still), else 0.
     #[arg(long, value_name = "FILE")]
     #[arg(help_heading = "Input and output")]
     limited_mask: Option<PathBuf>,
@@ -85,6 +86,7 @@ pub(crate) struct Args {
 
 pub(crate) fn run(args: &Args) -> Result<Outcome> {
     // What can be refused without computing is refused first.
+    args.method.check_rule()?;
     let settings = settings(args);
     let explain = |error| explain(error, &args.map);
     settings.validate().map_err(explain)?;
@@ -120,7 +122,10 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     let certificate = args.certify.then(|| pipeline.certify(&density)).transpose().map_err(explain)?;
 
     let verify = if args.verify {
-        let definition = reference::radius_by_table(&counts, settings.search);
+        let definition = match settings.rule {
+            Rule::Even => reference::even(&counts, settings.search),
+            _ => reference::radius_by_table(&counts, settings.search),
+        };
         let definition = match &mask {
             Some(mask) => definition.where_needed(mask),
             None => definition,
@@ -246,8 +251,12 @@ fn settings(args: &Args) -> Settings {
 fn write_radius(args: &Args, settings: &Settings, device: &DeviceInfo, radius: &Image<u32>) -> Result<()> {
     match Format::of(&args.output)? {
         Format::Png => {
-            let title = format!("Radius of a box with {} photons", args.method.min_photons);
-            let picture = Picture { title: &title, unit: "pixels", range: Some(1..=args.method.max_radius) };
+            let (title, least) = match settings.rule {
+                Rule::Even => ("Radius of a box of even density".to_owned(), 0),
+                _ => (format!("Radius of a box with {} photons", settings.search.min_photons), 1),
+            };
+            let range = Some(least..=settings.search.max_radius);
+            let picture = Picture { title: &title, unit: "pixels", range };
             write_picture(&args.output, radius, &picture)?;
         }
         Format::Exr | Format::Npy => {

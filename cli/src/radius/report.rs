@@ -8,7 +8,7 @@ use varikernel::Certificate;
 use varikernel::gl::{DeviceInfo, Sample};
 use varikernel::image::Difference;
 use varikernel::maps::exactness::Plan;
-use varikernel::settings::{Faults, Settings};
+use varikernel::settings::{Faults, Rule, Settings};
 use varikernel_lab::RadiusSummary;
 
 use crate::output;
@@ -61,12 +61,17 @@ impl Timing {
 pub(super) fn print(report: &Report<'_>) -> Result<()> {
     let RadiusSummary { min, mean, median, max, limited_share } = report.radius;
     let [width, height] = report.map.size;
+    let (rule, limited) = match report.settings.rule {
+        Rule::Even => ("even: the widest box of a density that is even but for noise", "are even up to MR"),
+        _ => ("nearest: the smallest box that holds n photons", "found too few photons"),
+    };
     let mut facts = vec![
         ("map", format!("{}, {width} x {height} pixels", report.map.file.display())),
         ("photons", format!("{}, at most {} in a pixel", report.map.photons, report.map.max_count)),
         ("renderer", report.device.renderer.clone()),
         ("radius", format!("{min} to {max} pixels, mean {mean:.3}, median {median}")),
-        ("limited", format!("{:.3} % found too few photons", 100.0 * limited_share)),
+        ("rule", rule.to_owned()),
+        ("limited", format!("{:.3} % {limited}", 100.0 * limited_share)),
         ("exact", exactness(report).to_owned()),
     ];
     for Timing { stage, query_ms, wall_ms } in &report.stages {

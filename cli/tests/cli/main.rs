@@ -17,6 +17,7 @@ mod outputs;
 mod owners;
 mod photons;
 mod render;
+mod rule;
 mod saving;
 mod stress;
 mod synth;

@@ -12,6 +12,7 @@ use super::{Study, Summary};
 use crate::picture::{LightError, PictureError};
 use varikernel::error::{Error, Result};
 use varikernel::image::write_atomically;
+use varikernel::settings::Rule;
 
 /// What a row of `study.csv` says; a part of the study fills what it measures. Times stand last: all before
 /// them is the same at each run.
@@ -114,6 +115,7 @@ impl<'a> Record<'a> {
         let (min_photons, fixed_radius) = match row.width {
             Width::Holding(n) => (Some(n), None),
             Width::Fixed(radius) => (None, Some(radius)),
+            Width::Even => (None, None),
         };
         Self {
             part: "density",
@@ -121,8 +123,9 @@ impl<'a> Record<'a> {
             width: Some(side),
             height: Some(side),
             seeds: Some(row.seeds),
+            method: if row.width == Width::Even { Rule::Even.name() } else { "" },
             min_photons,
-            max_radius: min_photons.map(|_| max_radius),
+            max_radius: (!row.width.is_fixed()).then_some(max_radius),
             fixed_radius,
             corrected: Some(row.corrected),
             mean_radius: Some(row.mean_radius),

@@ -123,7 +123,12 @@ impl Study {
         let equal_time = pictures::equal_time(&self.pictures);
         Summary {
             advice: radii.first().map(|(_, overall)| pareto::advice(overall)).unwrap_or_default(),
-            density: [words::stopping_rule(&self.density), words::density(&self.density)].concat(),
+            density: [
+                words::stopping_rule(&self.density),
+                words::density(&self.density),
+                words::even(&self.density),
+            ]
+            .concat(),
             pictures: words::pictures(&equal_photons, &equal_time),
             targets: pictures::targets(&equal_photons, self.settings.pictures.size),
             radii,

@@ -106,14 +106,13 @@ pub(super) fn by_question(overall: &[(Question, Vec<Overall>)]) -> Vec<String> {
     kinds.into_iter().filter_map(plot).collect()
 }
 
-/// Error of an estimate by the mean radius of its boxes: growing ones with and without correction, and fixed
-/// ones.
+/// Error of an estimate by the mean radius of its boxes: growing ones with and without correction, fixed
+/// ones, and even ones.
 pub(super) fn density(rows: &[DensityRow], shape: Shape) -> String {
-    let line = |name: &str, colour, style, growing: bool, corrected: bool| {
+    let line = |name: &str, colour, style, is_of: fn(&DensityRow) -> bool| {
         let mut points: Vec<Point> = rows
             .iter()
-            .filter(|row| row.shape == shape && row.corrected == corrected)
-            .filter(|row| matches!(row.width, Width::Holding(_)) == growing)
+            .filter(|row| row.shape == shape && is_of(row))
             .map(|row| Point { half_width: row.rmse.margin(), ..Point::at(row.mean_radius, row.rmse.mean) })
             .collect();
         points.sort_by(|a, b| a.x.total_cmp(&b.x));
@@ -124,9 +123,12 @@ pub(super) fn density(rows: &[DensityRow], shape: Shape) -> String {
         x: axis("mean radius (pixels)", Scale::Logarithmic),
         y: axis("RMSE (parts of the mean density)", Scale::Logarithmic),
         series: vec![
-            line("variable, count c", COLOURS[0], Style::Solid, true, false),
-            line("variable, c - 1", COLOURS[2], Style::Dashed, true, true),
-            line("fixed radius", COLOURS[1], Style::Dotted, false, false),
+            line("variable, count c", COLOURS[0], Style::Solid, |row| {
+                row.width.is_growing() && !row.corrected
+            }),
+            line("variable, c - 1", COLOURS[2], Style::Dashed, |row| row.corrected),
+            line("fixed radius", COLOURS[1], Style::Dotted, |row| row.width.is_fixed()),
+            line("even", COLOURS[3], Style::Solid, |row| row.width == Width::Even),
         ],
     }
     .svg()
@@ -146,7 +148,7 @@ pub(super) fn stopping_rule(rows: &[DensityRow]) -> String {
                     half_width: row.mean_error.margin(),
                     ..Point::at(f64::from(n), row.mean_error.mean)
                 }),
-                Width::Fixed(_) => None,
+                Width::Fixed(_) | Width::Even => None,
             })
             .collect(),
     };

@@ -11,41 +11,75 @@ type Measure = (&'static str, fn(&DensityRow) -> Confidence, usize);
 /// The measures by which estimates are compared.
 const MEASURES: [Measure; 2] = [("RMSE", |row| row.rmse, 0), ("relative RMSE", |row| row.relative_rmse, 1)];
 
+/// The best of some rows by a measure, and whether it is the last of them.
+fn best<'a>(
+    rows: impl DoubleEndedIterator<Item = &'a DensityRow> + Clone,
+    measure: fn(&DensityRow) -> Confidence,
+) -> Option<(&'a DensityRow, bool)> {
+    let best = rows.clone().min_by(|a, b| measure(a).mean.total_cmp(&measure(b).mean))?;
+    Some((best, best.width == rows.last()?.width))
+}
+
+/// The ratio of the errors of each seed.
+fn ratio(one: &DensityRow, other: &DensityRow, place: usize) -> Option<RatioInterval> {
+    let pairs: Vec<(f64, f64)> =
+        one.of_seeds.iter().zip(&other.of_seeds).map(|(a, b)| (a[place], b[place])).collect();
+    RatioInterval::of(&pairs)
+}
+
 /// For each shape: which n and which fixed radius are best, and which of both, by both measures.
 pub(super) fn density(rows: &[DensityRow]) -> Vec<String> {
     let mut words = Vec::new();
     for shape in Shape::ALL {
         for (name, measure, place) in MEASURES {
-            let best = |growing: bool| {
-                let mut of_kind =
-                    rows.iter().filter(|row| row.shape == shape && row.width.is_growing() == growing);
-                let best = of_kind.clone().min_by(|a, b| measure(a).mean.total_cmp(&measure(b).mean))?;
-                let widest = of_kind.next_back()?.width;
-                Some((best, best.width == widest))
+            let of_shape = || rows.iter().filter(|row| row.shape == shape);
+            let growing = best(of_shape().filter(|row| row.width.is_growing()), measure);
+            let fixed = best(of_shape().filter(|row| row.width.is_fixed()), measure);
+            let (Some((variable, widest_variable)), Some((fixed, widest_fixed))) = (growing, fixed) else {
+                continue;
             };
-            let (Some((variable, _)), Some((fixed, _))) = (best(true), best(false)) else { continue };
-            let pairs: Vec<(f64, f64)> =
-                variable.of_seeds.iter().zip(&fixed.of_seeds).map(|(a, b)| (a[place], b[place])).collect();
-            let Some(ratio) = RatioInterval::of(&pairs) else { continue };
+            let Some(ratio) = ratio(variable, fixed, place) else { continue };
             let verdict = match Winner::by(&ratio) {
                 Winner::Variable => "variable wins",
                 Winner::Fixed => "fixed wins",
                 Winner::Undecided => "level",
             };
-            let told = |growing, row: &DensityRow| {
-                let end =
-                    if best(growing).is_some_and(|(_, at_end)| at_end) { ", the widest tried" } else { "" };
+            let told = |row: &DensityRow, at_end| {
+                let end = if at_end { ", the widest tried" } else { "" };
                 format!("{} ({}{end})", measure(row), width(row))
             };
             words.push(format!(
                 "{}, {name}: {} of the best variable estimate, {} of the best fixed one: {verdict}.",
                 shape.name(),
-                told(true, variable),
-                told(false, fixed),
+                told(variable, widest_variable),
+                told(fixed, widest_fixed),
             ));
         }
     }
     words
+}
+
+/// For each shape: the error by the rule of even density, for which nothing is chosen, over those of the best
+/// n and of the best fixed radius.
+pub(super) fn even(rows: &[DensityRow]) -> Vec<String> {
+    let (name, measure, place) = MEASURES[0];
+    let of_shape = |shape| {
+        let rows = || rows.iter().filter(move |row| row.shape == shape);
+        let even = rows().find(|row| row.width == Width::Even)?;
+        let (growing, _) = best(rows().filter(|row| row.width.is_growing()), measure)?;
+        let (fixed, _) = best(rows().filter(|row| row.width.is_fixed()), measure)?;
+        Some(format!(
+            "{}, {name}: {} by the rule even, without any choice: {} of the best variable estimate ({}) and \
+             {} of the best fixed one ({}).",
+            shape.name(),
+            measure(even),
+            ratio(even, growing, place)?,
+            width(growing),
+            ratio(even, fixed, place)?,
+            width(fixed),
+        ))
+    };
+    Shape::ALL.into_iter().filter_map(of_shape).collect()
 }
 
 /// What c - 1 in place of c does to the mean of the uniform density, for the smallest and the largest n.
@@ -54,7 +88,7 @@ pub(super) fn stopping_rule(rows: &[DensityRow]) -> Vec<String> {
         rows.iter().filter(move |row| row.shape == Shape::Uniform && row.corrected == corrected).filter_map(
             |row| match row.width {
                 Width::Holding(n) => Some((n, row.mean_error)),
-                Width::Fixed(_) => None,
+                Width::Fixed(_) | Width::Even => None,
             },
         )
     };
@@ -83,6 +117,7 @@ pub(super) fn width(row: &DensityRow) -> String {
         (Width::Holding(n), false) => format!("n = {n}"),
         (Width::Holding(n), true) => format!("n = {n}, c - 1"),
         (Width::Fixed(radius), _) => format!("radius {radius}"),
+        (Width::Even, _) => "even".to_owned(),
     }
 }
 
@@ -201,5 +236,25 @@ mod tests {
         rows[3] = row(Width::Fixed(3), false, 0.5, 0.0);
         assert!(density(&rows)[0].ends_with("variable wins."));
         assert_eq!(density(&[]), [""; 0]);
+    }
+
+    #[test]
+    fn the_rule_without_a_choice_stands_beside_both() {
+        let mut rows = vec![
+            row(Width::Holding(10), false, 0.3, 0.02),
+            row(Width::Holding(25), false, 0.4, 0.02),
+            row(Width::Fixed(2), false, 0.1, 0.0),
+            row(Width::Fixed(3), false, 0.9, 0.0),
+        ];
+        assert_eq!(even(&rows), [""; 0]);
+        rows.push(row(Width::Even, false, 0.2, 0.0));
+        let [told] = &even(&rows)[..] else { panic!("a sentence for the one shape") };
+        assert!(
+            told.starts_with("uniform, RMSE: 0.2000 ± 0.0100 by the rule even, without any choice: 0.67 (")
+        );
+        assert!(told.contains(" of the best variable estimate (n = 10) and 2.00 ("), "{told}");
+        assert!(told.ends_with(" of the best fixed one (radius 2)."), "{told}");
+        // Neither kind's best is the even one.
+        assert_eq!(density(&rows).len(), 2);
     }
 }

@@ -18,7 +18,7 @@ use crate::radius::frame_planner::{self, FramePlanner};
 use crate::radius::planner::Decision;
 use crate::radius::search::{self, RadiusSearch};
 use crate::radius::tables::{self, Tables};
-use crate::settings::{Order, Planning, Search, Settings};
+use crate::settings::{Order, Planning, Rule, Search, Settings};
 
 /// Density map in, radius map out, for one size and one set of settings.
 ///
@@ -112,13 +112,14 @@ impl RadiusPipeline {
     }
 
     /// Searches in another order from now on; the first time, its programs are compiled and its map
-    /// allocated. With [`Planning::EachFrame`], the next frame is planned anew.
+    /// allocated. With [`Planning::EachFrame`], the next frame is planned anew; with [`Rule::Even`], nothing
+    /// is searched in an order.
     ///
     /// # Errors
     /// As [`new`](Self::new); the order stays as it was then.
     pub fn set_order(&mut self, order: Order) -> Result<()> {
         let old = self.settings.search.order;
-        if order == old {
+        if order == old || self.settings.rule == Rule::Even {
             return Ok(());
         }
         let settings = Settings { search: Search { order, ..self.settings.search }, ..self.settings };
@@ -184,7 +185,7 @@ pub fn shader_sources(density_format: TextureFormat, settings: &Settings) -> Vec
     let mut sources = tables::build_sources(density_format, settings);
     sources.extend(search::search_sources(density_format, settings));
     sources.extend(certificate::sources(density_format, settings));
-    if settings.planning == Planning::EachFrame {
+    if settings.planning == Planning::EachFrame && settings.rule == Rule::Nearest {
         sources.push(frame_planner::census_source(density_format, settings));
     }
     sources

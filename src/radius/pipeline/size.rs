@@ -11,7 +11,7 @@ use crate::radius::driver_limits;
 use crate::radius::frame_planner::FramePlanner;
 use crate::radius::search::RadiusSearch;
 use crate::radius::tables::Tables;
-use crate::settings::{Order, Planning, Search, Settings};
+use crate::settings::{Order, Planning, Rule, Search, Settings};
 
 /// Bytes of textures and buffers, known before they are made: every level and layer, as large as its format
 /// says, as [`Gl::texture_bytes`](crate::Gl::texture_bytes) and [`Gl::buffer_bytes`](crate::Gl::buffer_bytes)
@@ -23,7 +23,8 @@ pub struct MemoryRequired {
     /// What `new` and `resize` allocate.
     pub at_creation: u64,
     /// What searches of all other orders take, each allocated when
-    /// [`set_order`](RadiusPipeline::set_order) or the planner of each frame asks for it the first time.
+    /// [`set_order`](RadiusPipeline::set_order) or the planner of each frame asks for it the first time; 0 for
+    /// [`Rule::Even`], which has no order.
     pub other_orders: u64,
     /// What adding photons ([`Changed::Added`](crate::Changed::Added)) takes, from the first time on.
     pub additions: u64,
@@ -97,9 +98,9 @@ impl RadiusPipeline {
         self.built = None;
         self.searched = None;
         self.tables.resize(size, &mut targets);
-        self.search.resize(&mut targets);
+        self.search.resize(size, &mut targets);
         for (_, search) in &mut self.resting {
-            search.resize(&mut targets);
+            search.resize(size, &mut targets);
         }
         self.certifier.resize();
         if let (Some(planner), Some(targets)) = (&mut self.planner, of_planner) {
@@ -160,7 +161,7 @@ fn memory(
     };
     let other_orders = Order::ALL
         .into_iter()
-        .filter(|&order| order != settings.search.order)
+        .filter(|&order| settings.rule == Rule::Nearest && order != settings.search.order)
         .map(|order| Settings { search: Search { order, ..settings.search }, ..*settings })
         // An order that is refused takes nothing.
         .filter_map(|settings| search(&settings).ok());

@@ -1,6 +1,7 @@
 //! The search: density map and structure in, radius map out (thesis 3.5).
 
 mod bracketed;
+mod even;
 mod grid;
 mod mask_tiles;
 mod stepwise;
@@ -16,26 +17,27 @@ use crate::error::Result;
 use crate::gl::{Gl, Pass, Program, ShaderSource, Target, TargetShape, Targets, TextureFormat, glsl};
 use crate::maps::Frame;
 use crate::maps::RadiusMap;
-use crate::maps::exactness;
 use crate::radius::tables::{self, Tables};
-use crate::settings::{Edges, Method, Order, Settings};
+use crate::settings::{Method, Order, Rule, Settings};
 
 const SEARCH: &str = "radius search";
 
 /// The search of one method and the map that it fills.
 #[derive(Debug)]
 pub(crate) struct RadiusSearch {
-    order: Ordered,
+    way: Way,
     radii: RadiusMap,
     /// For maps without a photon.
     unreached: Program,
     settings: Settings,
 }
 
+/// By rule and order.
 #[derive(Debug)]
-enum Ordered {
+enum Way {
     Stepwise(Box<stepwise::Stepwise>),
     Bracketed(Box<bracketed::Bracketed>),
+    Even(Box<even::Even>),
 }
 
 impl RadiusSearch {
@@ -46,16 +48,17 @@ impl RadiusSearch {
         settings: &Settings,
         passes: Vec<RangeInclusive<u32>>,
     ) -> Result<Self> {
-        let order = match settings.search.order {
-            Order::Forward | Order::Binary => {
-                Ordered::Stepwise(Box::new(stepwise::Stepwise::new(gl, size, density, settings, passes)?))
+        let way = match (settings.rule, settings.search.order) {
+            (Rule::Even, _) => Way::Even(Box::new(even::Even::new(gl, size, density, settings)?)),
+            (Rule::Nearest, Order::Forward | Order::Binary) => {
+                Way::Stepwise(Box::new(stepwise::Stepwise::new(gl, size, density, settings, passes)?))
             }
-            Order::Bracketed => {
-                Ordered::Bracketed(Box::new(bracketed::Bracketed::new(gl, size, density, settings)?))
+            (Rule::Nearest, Order::Bracketed) => {
+                Way::Bracketed(Box::new(bracketed::Bracketed::new(gl, size, density, settings)?))
             }
         };
         Ok(Self {
-            order,
+            way,
             radii: RadiusMap::of(Target::of(gl, &RadiusMap::shape(size, settings.limited_mask))?),
             unreached: Program::new(gl, &unreached::source(settings))?,
             settings: *settings,
@@ -65,9 +68,10 @@ impl RadiusSearch {
     /// What a search of that many passes allocates for maps of `size`, in the order in which
     /// [`resize`](Self::resize) takes it.
     pub(crate) fn shapes(size: UVec2, settings: &Settings, passes: usize) -> Vec<TargetShape> {
-        let mut shapes = match settings.search.order {
-            Order::Forward | Order::Binary => stepwise::shapes(size, settings, passes),
-            Order::Bracketed => bracketed::shapes(size, settings),
+        let mut shapes = match (settings.rule, settings.search.order) {
+            (Rule::Even, _) => even::shapes(size, settings),
+            (Rule::Nearest, Order::Forward | Order::Binary) => stepwise::shapes(size, settings, passes),
+            (Rule::Nearest, Order::Bracketed) => bracketed::shapes(size, settings),
         };
         shapes.push(RadiusMap::shape(size, settings.limited_mask));
         shapes
@@ -75,27 +79,29 @@ impl RadiusSearch {
 
     /// What it would allocate for another size.
     pub(crate) fn shapes_at(&self, size: UVec2) -> Vec<TargetShape> {
-        let passes = match &self.order {
-            Ordered::Stepwise(stepwise) => stepwise.passes(),
-            Ordered::Bracketed(_) => 1,
+        let passes = match &self.way {
+            Way::Stepwise(stepwise) => stepwise.passes(),
+            Way::Bracketed(_) | Way::Even(_) => 1,
         };
         Self::shapes(size, &self.settings, passes)
     }
 
     /// Takes targets for maps of another size; it holds no radii then.
-    pub(crate) fn resize(&mut self, targets: &mut Targets) {
-        match &mut self.order {
-            Ordered::Stepwise(stepwise) => stepwise.resize(targets),
-            Ordered::Bracketed(bracketed) => bracketed.resize(targets),
+    pub(crate) fn resize(&mut self, size: UVec2, targets: &mut Targets) {
+        match &mut self.way {
+            Way::Stepwise(stepwise) => stepwise.resize(targets),
+            Way::Bracketed(bracketed) => bracketed.resize(targets),
+            Way::Even(even) => even.resize(size, targets),
         }
         self.radii = RadiusMap::of(targets.take());
     }
 
     /// Searches the pixels whose radius can differ from what the map holds.
     pub(crate) fn estimate(&mut self, frame: &Frame<'_>, tables: &Tables) -> Result<()> {
-        match &mut self.order {
-            Ordered::Stepwise(stepwise) => stepwise.estimate(frame, tables, &mut self.radii),
-            Ordered::Bracketed(bracketed) => bracketed.estimate(frame, tables, &mut self.radii),
+        match &mut self.way {
+            Way::Stepwise(stepwise) => stepwise.estimate(frame, tables, &mut self.radii),
+            Way::Bracketed(bracketed) => bracketed.estimate(frame, tables, &mut self.radii),
+            Way::Even(even) => even.estimate(frame, tables, &mut self.radii),
         }
     }
 
@@ -141,12 +147,13 @@ enum Continued {
 /// Every shader that a search of these settings may compile.
 pub(crate) fn search_sources(density: TextureFormat, settings: &Settings) -> Vec<ShaderSource> {
     let one_pass = search_source(density, settings, Continued::No);
-    let mut sources = match settings.search.order {
-        Order::Forward if settings.method != Method::NaiveMipmap => {
+    let mut sources = match (settings.rule, settings.search.order) {
+        (Rule::Even, _) => even::sources(density, settings),
+        (Rule::Nearest, Order::Forward) if settings.method != Method::NaiveMipmap => {
             vec![one_pass, search_source(density, settings, Continued::Yes)]
         }
-        Order::Forward | Order::Binary => vec![one_pass],
-        Order::Bracketed => bracketed::sources(density, settings),
+        (Rule::Nearest, Order::Forward | Order::Binary) => vec![one_pass],
+        (Rule::Nearest, Order::Bracketed) => bracketed::sources(density, settings),
     };
     sources.push(unreached::source(settings));
     sources
@@ -157,9 +164,7 @@ fn search_source(density: TextureFormat, settings: &Settings, continued: Continu
     let source = ShaderSource::new(SEARCH)
         .variant_if(continued == Continued::Yes, "continued")
         .targets(RadiusMap::formats(settings.limited_mask))
-        .define_if(settings.search.edges == Edges::Zero, "EDGES_ZERO")
         .define_if(settings.laboratory.faults.float_ratio, "FAULT_FLOAT_RATIO")
-        .define_if(exactness::needs_wide_products(settings), "WIDE_PRODUCTS")
         .define_if(settings.limited_mask, "LIMITED_MASK")
         .define_if(settings.masked, "MASKED")
         .define_if(continued == Continued::Yes, "CONTINUED");
@@ -168,7 +173,7 @@ fn search_source(density: TextureFormat, settings: &Settings, continued: Continu
         Order::Binary => source,
         Order::Bracketed => source.define("ORDER_BRACKETED", 1_u32),
     };
-    let source = source.file(glsl!("common/mask.glsl")).file(glsl!("common/enough.glsl"));
+    let source = tables::edge_rule(source.file(glsl!("common/mask.glsl")), settings);
     tables::counter(source, density, settings).file(match settings.method {
         Method::NaiveMipmap => glsl!("radius/search/naive_mipmap.frag"),
         _ => glsl!("radius/search/stepwise.frag"),

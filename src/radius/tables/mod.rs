@@ -29,14 +29,15 @@ mod summed_area_table;
 use glam::UVec2;
 
 use crate::error::{Error, Result};
-use crate::gl::{Gl, Pass, ShaderSource, TargetShape, Targets, Texture, TextureFormat};
+use crate::gl::{Gl, Pass, ShaderSource, TargetShape, Targets, Texture, TextureFormat, glsl};
 use crate::maps::DensityMap;
 use crate::maps::Rectangle;
-use crate::maps::exactness::Plan;
-use crate::settings::{Method, Settings, Storage};
+use crate::maps::exactness::{self, Plan};
+use crate::settings::{Edges, Method, Settings, Storage};
 
 pub(crate) use pyramid::largest_level;
 pub use pyramid::{most_blocks, stack_size};
+pub(crate) use summed_area_table::scan;
 
 /// The intermediate structure of one method, allocated for one size.
 #[derive(Debug)]
@@ -157,6 +158,17 @@ pub(crate) fn counter(source: ShaderSource, density: TextureFormat, settings: &S
     }
 }
 
+/// Adds the edge rule, by which a count is enough or not.
+pub(crate) fn edge_rule(source: ShaderSource, settings: &Settings) -> ShaderSource {
+    let source = source.define_if(settings.search.edges == Edges::Zero, "EDGES_ZERO");
+    let source = if exactness::needs_wide_products(settings) {
+        source.define("WIDE_PRODUCTS", 1_u32).file(glsl!("common/product.glsl"))
+    } else {
+        source
+    };
+    source.file(glsl!("common/enough.glsl"))
+}
+
 /// The number in which the method's sums are kept.
 pub(crate) fn storage(settings: &Settings) -> Storage {
     match settings.method {
@@ -184,7 +196,7 @@ fn number(source: ShaderSource, settings: &Settings) -> ShaderSource {
         .define_if(storage == Storage::U16, "SUM_U16")
         .define_if(storage == Storage::F16, "SUM_F16")
         .define_if(matches!(storage, Storage::F32MinusMean | Storage::F32MinusWholeMean), "SUM_MINUS_MEAN")
-        .file(crate::gl::glsl!("common/sum.glsl"))
+        .file(glsl!("common/sum.glsl"))
 }
 
 /// Adds access to the density map, in the number type of the sums.
@@ -194,11 +206,11 @@ pub(crate) fn density_access(
     settings: &Settings,
 ) -> ShaderSource {
     let source = source.define_if(density == TextureFormat::R32Float, "DENSITY_F32");
-    number(source, settings).file(crate::gl::glsl!("common/density.glsl"))
+    number(source, settings).file(glsl!("common/density.glsl"))
 }
 
 /// The shader that copies a density map into level 0 of a structure.
 fn seed_source(label: &str, density: TextureFormat, settings: &Settings) -> ShaderSource {
     let source = ShaderSource::new(label).targets([format(settings)]);
-    density_access(source, density, settings).file(crate::gl::glsl!("radius/tables/seed.frag"))
+    density_access(source, density, settings).file(glsl!("radius/tables/seed.frag"))
 }

@@ -10,6 +10,7 @@ use varikernel::{
 
 use super::host::fail_at_each;
 use super::{SIZE, Watch};
+use crate::even::even;
 use crate::support::{planned, random_map, search};
 
 fn question() -> Search {
@@ -40,6 +41,7 @@ pub(super) fn pipeline(watch: &Watch<'_>) -> RadiusPipeline {
 pub(super) fn all(watch: &Watch<'_>) {
     maps(watch);
     methods(watch);
+    even_density(watch);
     frames(watch);
     masks(watch);
     failing(watch);
@@ -94,6 +96,21 @@ fn methods(watch: &Watch<'_>) {
         watch.unchanged("RadiusPipeline::search");
     }
     watch.unchanged("dropping pipelines");
+}
+
+/// The rule without n.
+fn even_density(watch: &Watch<'_>) {
+    let (map, settings) = (map(watch), even(32, Edges::Scale));
+    let mut pipeline = RadiusPipeline::new(&watch.gl, SIZE, map.format(), settings).unwrap();
+    watch.unchanged("RadiusPipeline::new, even");
+    let radii = pipeline.render(&map).unwrap();
+    watch.unchanged("RadiusPipeline::render, even");
+    let expected = reference::even(&density(), settings.search);
+    assert_eq!(radii.read().unwrap(), expected.radius, "even under the host's state");
+    assert!(pipeline.certify(&map).is_err());
+    watch.unchanged("RadiusPipeline::certify, even");
+    pipeline.resize(UVec2::new(20, 3)).unwrap();
+    watch.unchanged("RadiusPipeline::resize, even");
 }
 
 /// The calls of a host that declares what changed.

@@ -47,7 +47,6 @@ use crate::gl::{
     Gl, Pass, Program, ShaderSource, Target, TargetShape, Targets, Texture, TextureFormat, TextureShape, glsl,
 };
 use crate::maps::RadiusMap;
-use crate::maps::exactness;
 use crate::maps::{Changed, Frame, Rectangle};
 use crate::radius::tables::{self, Tables};
 use crate::settings::{BRACKET_TILE_SIDE as TILE_SIDE, Edges, Order, Search, Settings};
@@ -287,12 +286,8 @@ fn block_sources(
 
 /// Adds the edge rule, the counter, and the boxes around a block.
 fn of_block(source: ShaderSource, density: TextureFormat, settings: &Settings, side: u32) -> ShaderSource {
-    let source = source
-        .define("SIDE", side)
-        .define("SIDE_LOG2", side.ilog2())
-        .define_if(settings.search.edges == Edges::Zero, "EDGES_ZERO")
-        .define_if(exactness::needs_wide_products(settings), "WIDE_PRODUCTS")
-        .file(glsl!("common/enough.glsl"));
+    let source = source.define("SIDE", side).define("SIDE_LOG2", side.ilog2());
+    let source = tables::edge_rule(source, settings);
     tables::counter(source, density, settings).file(glsl!("radius/search/bracketed/block.glsl"))
 }
 

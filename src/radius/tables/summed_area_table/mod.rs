@@ -18,7 +18,7 @@
 //! The listings' faults are described in the module above, since all methods have some.
 
 mod doubling;
-mod scan;
+pub(crate) mod scan;
 
 use glam::UVec2;
 

@@ -29,6 +29,7 @@
 //! draw buffers in the place of shared memory.
 
 use std::ops::Range;
+use std::rc::Rc;
 
 use glam::UVec2;
 
@@ -55,27 +56,39 @@ const UNPACK: &str = "sat unpack";
 
 /// The passes that fill a table, and what lies between them.
 #[derive(Debug)]
-pub(super) struct Scan {
+pub(crate) struct Scan {
     tile_sums: Stage,
     rows: Direction,
     columns: Direction,
     tiles: Stage,
-    unpack: Program,
+    unpack: Rc<Program>,
 }
 
 impl Scan {
-    pub(super) fn new(gl: &Gl, size: UVec2, density: TextureFormat, settings: &Settings) -> Result<Self> {
+    pub(crate) fn new(gl: &Gl, size: UVec2, density: TextureFormat, settings: &Settings) -> Result<Self> {
         let mut targets = Targets::new(gl, &shapes(size))?;
         Ok(Self {
             tile_sums: Stage::new(gl, &tile_sums_source(density, settings), &mut targets)?,
             rows: Direction::new(gl, Axis::Rows, grid(size), &mut targets)?,
             columns: Direction::new(gl, Axis::Columns, grid(size), &mut targets)?,
             tiles: Stage::new(gl, &tiles_source(density, settings), &mut targets)?,
-            unpack: Program::new(gl, &unpack_source(settings))?,
+            unpack: Rc::new(Program::new(gl, &unpack_source(settings))?),
         })
     }
 
-    pub(super) fn resize(&mut self, size: UVec2, targets: &mut Targets) {
+    /// For maps of another size beside these, by the same programs.
+    pub(crate) fn beside(&self, gl: &Gl, size: UVec2) -> Result<Self> {
+        let mut targets = Targets::new(gl, &shapes(size))?;
+        Ok(Self {
+            tile_sums: self.tile_sums.beside(&mut targets),
+            rows: self.rows.beside(grid(size), &mut targets),
+            columns: self.columns.beside(grid(size), &mut targets),
+            tiles: self.tiles.beside(&mut targets),
+            unpack: Rc::clone(&self.unpack),
+        })
+    }
+
+    pub(crate) fn resize(&mut self, size: UVec2, targets: &mut Targets) {
         self.tile_sums.target = targets.take();
         self.rows.resize(grid(size), targets);
         self.columns.resize(grid(size), targets);
@@ -86,7 +99,7 @@ impl Scan {
     ///
     /// Of the sums between, those of the changed tiles and of the lines through them are made anew; of the
     /// entries, those from the first changed one on to the right and above.
-    pub(super) fn build(
+    pub(crate) fn build(
         &mut self,
         density: &DensityMap,
         plan: Plan,
@@ -119,7 +132,7 @@ fn grid(size: UVec2) -> UVec2 {
 }
 
 /// The sums between, in the order of the passes.
-pub(super) fn shapes(size: UVec2) -> Vec<TargetShape> {
+pub(crate) fn shapes(size: UVec2) -> Vec<TargetShape> {
     let layered =
         |label, size, layers| vec![TextureShape::layered(label, TextureFormat::Rgba32Uint, size, layers)];
     let mut shapes = vec![layered(TILE_SUMS, grid(size), 3)];
@@ -143,13 +156,17 @@ fn of_map<'a>(pass: Pass<'a>, density: &'a DensityMap, plan: Plan) -> Pass<'a> {
 /// A program and the target that it fills.
 #[derive(Debug)]
 struct Stage {
-    program: Program,
+    program: Rc<Program>,
     target: Target,
 }
 
 impl Stage {
     fn new(gl: &Gl, source: &ShaderSource, targets: &mut Targets) -> Result<Self> {
-        Ok(Self { program: Program::new(gl, source)?, target: targets.take() })
+        Ok(Self { program: Rc::new(Program::new(gl, source)?), target: targets.take() })
+    }
+
+    fn beside(&self, targets: &mut Targets) -> Self {
+        Self { program: Rc::clone(&self.program), target: targets.take() }
     }
 }
 
@@ -213,6 +230,15 @@ impl Direction {
         })
     }
 
+    fn beside(&self, grid: UVec2, targets: &mut Targets) -> Self {
+        Self {
+            axis: self.axis,
+            elements: Elements::of(self.axis, grid),
+            group_sums: self.group_sums.beside(targets),
+            elements_before: self.elements_before.beside(targets),
+        }
+    }
+
     fn resize(&mut self, grid: UVec2, targets: &mut Targets) {
         self.elements = Elements::of(self.axis, grid);
         self.group_sums.target = targets.take();
@@ -249,7 +275,7 @@ fn of_elements<'a>(
 }
 
 /// The shaders in the order of the passes.
-pub(super) fn sources(density: TextureFormat, settings: &Settings) -> Vec<ShaderSource> {
+pub(crate) fn sources(density: TextureFormat, settings: &Settings) -> Vec<ShaderSource> {
     let mut sources = vec![tile_sums_source(density, settings)];
     sources.extend([Axis::Rows, Axis::Columns].into_iter().flat_map(scan_sources));
     sources.extend([tiles_source(density, settings), unpack_source(settings)]);
