@@ -89,7 +89,7 @@ fn print_case(case: &PictureCase) -> Result<()> {
         case.photons, case.drawn, case.contributing
     ))?;
     let mut table =
-        new_table(&["stage", "ms", "copies", "point passes", "fragments", "ns each", "samples", "answer"]);
+        new_table(&["stage", "ms", "copies", "points", "fragments", "ns each", "samples", "answer"]);
     align_right(&mut table, 1..=6);
     for row in &case.rows {
         let number = |value: Option<f64>| value.map_or_else(String::new, three_digits);

@@ -20,7 +20,7 @@ const STAGES: [(&str, &[&str]); 6] = [
         ],
     ),
     ("stage-tables", &["light table run sums", "light table runs"]),
-    ("stage-tests", &["test of noise, narrow", "test of noise, wide"]),
+    ("stage-tests", &["test of noise, narrow", "test of noise, wide", "pooled tests of noise"]),
     ("stage-gather", &["light from tables"]),
     ("stage-smoothing", &["smooth light", "widths of light"]),
 ];
