@@ -1,5 +1,5 @@
 //! Errors of pictures: light from tables, variable radii and gathers against the best fixed radius (thesis
-//! 2.5, 5.1), for the same photons and for the same time, and their [bias](bias) apart from noise.
+//! 2.5, 5.1), for the same photons and for the same time, and their [bias] apart from noise.
 //!
 //! Each scene has a reference of many photons without kernels, of other seeds. Against it stand pictures of
 //! some numbers of photons, with some n and some fixed radii, of some seeds each; all pictures of a seed are
