@@ -269,6 +269,7 @@ typedef struct varikernel_settings {
     uint32_t min_photons;
     /**
      * MR: where the search ends, in pixels, 1 to 32767. Pixels that find too few photons get it. Default 32.
+     * With VARIKERNEL_RULE_EVEN a power of two from 1 to 64.
      */
     uint32_t max_radius;
     /**
@@ -591,8 +592,8 @@ enum varikernel_status varikernel_pipeline_create(const struct varikernel_contex
  * Finds the radii of a frame: draws only, reads nothing back, waits for nothing.
  *
  * `*radius_texture` is a GL_TEXTURE_2D in GL_R32UI, a usampler2D in your shaders: radii from 1 to MR in
- * pixels (by VARIKERNEL_RULE_EVEN from 0 on), 0 where the mask says that none is needed. `*limited_texture` is
- * one in GL_R8UI that is 1 where MR ended the search, or 0 if the settings ask for none; the pointer may be
+ * pixels (by VARIKERNEL_RULE_EVEN from 0 on), 0 where the mask says that none is needed. `*limited_texture`
+ * is one in GL_R8UI that is 1 where MR ended the search, or 0 if the settings ask for none; the pointer may be
  * null. Both belong to the pipeline, are complete without a sampler, and hold until its next frame. Take the
  * names anew each frame: textures may take turns.
  *

@@ -43,6 +43,7 @@ pub struct PlainSettings {
     /// n: photons that a box has to hold, at least 1. Default 25. Not asked for by VARIKERNEL_RULE_EVEN.
     pub min_photons: u32,
     /// MR: where the search ends, in pixels, 1 to 32767. Pixels that find too few photons get it. Default 32.
+    /// With VARIKERNEL_RULE_EVEN a power of two from 1 to 64.
     pub max_radius: u32,
     /// What a box holds outside the map: VARIKERNEL_EDGES_... Default VARIKERNEL_EDGES_SCALE.
     pub edges: u32,

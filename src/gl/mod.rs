@@ -22,6 +22,7 @@ mod shader_source;
 mod shape;
 mod stage_times;
 mod state;
+mod targets;
 #[doc = include_str!("state_contract.md")]
 pub mod state_contract {}
 mod texture;
@@ -32,7 +33,7 @@ mod vertices;
 pub use device_info::DeviceInfo;
 pub(crate) use fragment_test::{FragmentTest, fill_where};
 pub use interface::{Interface, ShaderStage, Variable};
-pub(crate) use pass::{Pass, Target, Targets};
+pub(crate) use pass::{Pass, Target};
 pub(crate) use program::Program;
 pub(crate) use query::Query;
 pub(crate) use readback::Readback;
@@ -42,6 +43,7 @@ pub(crate) use shape::{TargetShape, TextureShape, bytes_of};
 pub use stage_times::StageTimes;
 pub(crate) use state::StateGuard;
 pub use state::StatePolicy;
+pub(crate) use targets::Targets;
 pub(crate) use texture::Texture;
 pub use texture_format::TextureFormat;
 pub use timer::{Sample, Timer, time};

@@ -118,12 +118,12 @@ impl Target {
     }
 
     /// Sets level 0 of the textures, without layers, to 0.
-    pub(crate) fn clear_to_zero(&mut self) {
-        let Some(glow) = self.gl.live() else { return };
+    fn clear_to_zero(&self) {
+        self.bind_for_drawing();
         for (buffer, texture) in (0..).zip(&self.textures) {
+            let glow = self.gl.glow();
             // SAFETY: the context is current while the handle lives, and the values are of the buffer's kind.
             unsafe {
-                glow.bind_framebuffer(glow::DRAW_FRAMEBUFFER, Some(self.framebuffers[0]));
                 if texture.format().is_float() {
                     glow.clear_buffer_f32_slice(glow::COLOR, buffer, &[0.0; 4]);
                 } else {
@@ -184,33 +184,6 @@ impl Drop for Target {
     }
 }
 
-/// Targets that were made together, to be handed out in their order: all of them, or none where one failed.
-#[derive(Debug)]
-pub(crate) struct Targets(std::vec::IntoIter<Target>);
-
-impl Targets {
-    /// # Errors
-    /// Those of [`Target::of`].
-    pub(crate) fn new(gl: &Gl, shapes: &[TargetShape]) -> Result<Self> {
-        let targets: Vec<_> = shapes.iter().map(|shape| Target::of(gl, shape)).collect::<Result<_>>()?;
-        Ok(Self(targets.into_iter()))
-    }
-
-    /// The next one.
-    ///
-    /// # Panics
-    /// If there is none, a bug of the library: what was made and what is taken differ.
-    pub(crate) fn take(&mut self) -> Target {
-        self.0.next().expect("a target for each shape")
-    }
-
-    /// # Panics
-    /// If one is left, as [`take`](Self::take).
-    pub(crate) fn finish(self) {
-        assert_eq!(self.0.len(), 0, "a place for each target");
-    }
-}
-
 /// One draw, not yet sent.
 ///
 /// The raster state (no blending, no scissor, ...) is that of [`StateGuard`](super::StateGuard), which every
@@ -222,11 +195,13 @@ pub(crate) struct Pass<'a> {
     reads: Vec<(&'static str, &'a Texture)>,
     uniforms: Vec<(&'static str, Uniform)>,
     vertices: u32,
+    /// Whether the target is 0 where nothing is drawn.
+    over_zeros: bool,
 }
 
 impl<'a> Pass<'a> {
     pub(crate) fn new(label: &'a str, program: &'a Program) -> Self {
-        Self { label, program, reads: Vec::new(), uniforms: Vec::new(), vertices: 3 }
+        Self { label, program, reads: Vec::new(), uniforms: Vec::new(), vertices: 3, over_zeros: false }
     }
 
     /// Binds `texture` to the sampler `name`.
@@ -245,6 +220,12 @@ impl<'a> Pass<'a> {
     /// Draws `count` triangles that the program's vertex stage places by gl_VertexID, instead of the one.
     pub(crate) fn triangles(mut self, count: u32) -> Self {
         self.vertices = 3 * count;
+        self
+    }
+
+    /// What is not drawn over becomes 0.
+    pub(crate) fn over_zeros(mut self) -> Self {
+        self.over_zeros = true;
         self
     }
 
@@ -298,6 +279,9 @@ impl<'a> Pass<'a> {
 
     fn draw(&self, target: &Target, level: u32, first: UVec2, end: UVec2) -> Result<()> {
         self.prepare(target, level, first, end, |gl| {
+            if self.over_zeros {
+                target.clear_to_zero();
+            }
             // SAFETY: the context is current, and the vertex stage reads no buffer.
             unsafe {
                 gl.glow().bind_vertex_array(Some(gl.vertex_array()));

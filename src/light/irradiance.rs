@@ -148,7 +148,6 @@ impl IrradiancePipeline {
         }
         // What the stage held when it was used last is of other settings or photons.
         self.clear_light();
-        self.gathered = false;
         self.settings = settings;
         Ok(())
     }

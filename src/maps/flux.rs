@@ -42,7 +42,7 @@ impl FluxUnits {
         Self { power: self.power.max(other.power), square_root: self.square_root.max(other.square_root) }
     }
 
-    /// Four times these: room for sixteen times the photons before units grow again.
+    /// Four times these: room for four times the photons before units grow again.
     pub(crate) fn with_room(self) -> Self {
         Self { power: 4.0 * self.power, square_root: 2.0 * self.square_root }
     }

@@ -34,10 +34,11 @@ const TOO_LARGE: u32 = 4;
 /// The thesis's Figures 1.2 to 1.4 and ours, with the error of each.
 ///
 /// Draws one scene with the best fixed radius (Figure 1.2), one four times as large (1.3), one pixel (1.4),
-/// variable ones, and by tables, from the same photons. Errors are those of indirect light against a reference: the
-/// photons of each pixel alone, averaged over other seeds; they are also given for the caustics alone, where
-/// the reference's indirect irradiance is more than three times its median, and for the other diffuse pixels,
-/// the walls; not if the median is 0. The folder gets figures.png, figures.json and each picture.
+/// variable ones, and by tables, from the same photons. Errors are those of indirect light against a
+/// reference: the photons of each pixel alone, averaged over other seeds; they are also given for the caustics
+/// alone, where the reference's indirect irradiance is more than three times its median, and for the other
+/// diffuse pixels, the walls; not if the median is 0. The folder gets figures.png, figures.json and each
+/// picture.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
     /// Folder to write to; made if it is missing.

@@ -71,6 +71,7 @@ void main()
     }
     light_and_radius = vec4(light.rgb, radius);
     vec3 exact = light.rgb * steps_of_light();
-    bool fits = all(lessThanEqual(exact, vec3(MOST_STEPS)));
-    steps = fits ? uvec4(exact + 0.5, 1u) : uvec4(uvec3(0u), 0x10001u);
+    bool fits = all(lessThan(exact, vec3(MOST_STEPS - 1)));
+    vec3 by_chance = vec3(chance(pixel, 0u), chance(pixel, 1u), chance(pixel, 2u));
+    steps = fits ? uvec4(exact + by_chance, 1u) : uvec4(uvec3(0u), 0x10001u);
 }

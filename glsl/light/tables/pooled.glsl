@@ -16,7 +16,7 @@ const float NOISE_FLOOR = 0.75;
 float share_of_noise()
 {
     ivec2 last = map_size - 1;
-    float weights = float(entry(flux_table, last.x, last.y).a / 8u);
+    float weights = 0.125 * float(entry(flux_table, last.x, last.y).a);
     float found = float(entry(fine_tests, last.x, last.y).a);
     return weights > 0.0 ? clamp(found / weights, NOISE_FLOOR, 1.0) : 1.0;
 }

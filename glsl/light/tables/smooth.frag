@@ -18,7 +18,8 @@ void main()
     int radius = min(int(0.5 * light.a), MOST_SMOOTH);
     if (radius > 0) {
         uvec4 sum = sum_of(light_table, box_at(pixel, ivec4(texelFetch(extents, pixel, 0)), radius));
-        if (sum.a < 0x10000u) {
+        uint most = max(max(sum.r, sum.g), sum.b);
+        if (sum.a < 0x10000u && float(most) >= FEWEST_STEPS * float(sum.a)) {
             light.rgb = vec3(sum.rgb) / (steps_of_light() * float(sum.a));
         }
     }

@@ -8,7 +8,6 @@ void main()
     ivec2 pixel = 2 * ivec2(gl_FragCoord.xy);
     ivec4 extent = ivec4(texelFetch(extents, pixel, 0));
     Held fine = held_in(box_at(pixel, extent, 4));
-    ratios = uvec4(8192u);
     int radius = 8;
     for (int i = 0; i < 4; ++i) {
         Held coarse = held_in(box_at(pixel, extent, radius));

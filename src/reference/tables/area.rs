@@ -8,8 +8,8 @@ use crate::view::View;
 
 /// The geometric mean of all areas is 2 to this, in units.
 const MEAN_EXPONENT: i32 = 13;
-/// The most units that an area counts as.
-const MOST_UNITS: f64 = 262_144.0;
+/// The most units that an area counts as: the widest box of such pixels, 129 x 129, holds less than 2^32.
+const MOST_UNITS: f64 = 258_095.0;
 /// The least cosine between a surface's normal and the line of sight.
 const LEAST_COSINE: f64 = 1e-3;
 

@@ -27,7 +27,9 @@ const POOL: u32 = 2;
 /// The widest box that light is smoothed over, by its radius in pixels.
 const MOST_SMOOTH: u32 = 16;
 /// Light up to so many times what the picture's photons give its pixels in the mean is smoothed.
-const BRIGHTEST: f64 = 1024.0;
+const BRIGHTEST: f64 = 256.0;
+/// What is darker than this share of that is not.
+const DARKEST: f64 = 32.0 * 33.0 * 33.0 / 4_294_967_295.0;
 /// Units of the usual area of a pixel.
 const MEAN_AREA: f64 = 8192.0;
 /// Ratios are summed in whole numbers of this.
@@ -118,7 +120,8 @@ impl Tables {
         self.smooth(&Image::from_fn(size, |x, y| self.gather_at(x, y, &sums, &shares)))
     }
 
-    /// Light averaged over half of each pixel's width, over those that are lit, unless one is too bright.
+    /// Light averaged over half of each pixel's width, over those that are lit, unless one is too bright or
+    /// all are too dark for the steps that light is summed in.
     #[must_use]
     pub fn smooth(&self, gathered: &Image<Gathered>) -> Image<Gathered> {
         let all =
@@ -145,7 +148,9 @@ impl Tables {
                     }
                 }
             }
-            if is_too_bright { home } else { Gathered { light: sum.map(|sum| sum / count), ..home } }
+            let light = sum.map(|sum| sum / count);
+            let is_too_dark = light.into_iter().fold(0.0, f64::max) < DARKEST * brightest;
+            if is_too_bright || is_too_dark { home } else { Gathered { light, ..home } }
         })
     }
 
@@ -191,7 +196,7 @@ impl Tables {
     fn share_of_noise(&self, sums: &Sums) -> f64 {
         let (mut found, mut weights) = (0.0, 0.0);
         for (x, y) in (0..self.flux.size().x).flat_map(|x| (0..self.flux.size().y).map(move |y| (x, y))) {
-            let weight = f64::from(self.flux.at(x, y)[3] / 8);
+            let weight = f64::from(self.flux.at(x, y)[3]);
             let has_all = self.extents.at(x, y).into_iter().all(|extent| extent >= 2);
             found += weight * if has_all { self.difference(x, y, 2, sums) } else { 1.0 };
             weights += weight;

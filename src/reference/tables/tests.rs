@@ -128,7 +128,7 @@ fn noise_that_is_less_than_by_chance_is_known_from_narrow_boxes() {
     };
     assert!((share(&seldom) - 0.875).abs() < 0.08, "{}", share(&seldom));
     assert!((share(&scattered(1)) - 0.75).abs() < 1e-12);
-    assert!((share(&|_, _| 80) - 0.75).abs() < 1e-12);
+    assert!((share(&|_, _| 7) - 0.75).abs() < 1e-12);
     // Light that changes at each pixel is not taken for noise.
     assert!((share(&|x, y| 200 * ((x + y) % 2) + 1) - 1.0).abs() < 1e-12);
     // Nothing is known where there is nothing.

@@ -1,6 +1,7 @@
 //! Light from tables against its definition: flux in whole units, areas, extents, tests of noise, light.
 
 mod odd_input;
+mod range;
 mod skips;
 mod splat_faults;
 

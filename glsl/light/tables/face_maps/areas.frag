@@ -3,7 +3,8 @@
 // Areas beyond the largest weight count as that: their pixels' light is averaged evenly. Those below two
 // thirds of a unit are left out. So are pixels at the edge of a face, which see less of it than their area
 // says, where the face has others.
-const float MOST_UNITS = 262144.0;
+// The widest box of such pixels, 129 x 129, holds less than 2^32.
+const float MOST_UNITS = 258095.0;
 
 // 1 where a neighbour is on the same face: left, right, down and up.
 uniform usampler2D links;

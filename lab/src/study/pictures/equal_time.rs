@@ -61,9 +61,10 @@ pub struct EqualTime {
     pub gather: Vec<CurvePoint>,
     /// Light from tables.
     pub tables: Vec<CurvePoint>,
-    /// Times that variable and fixed radii both reach. Each width has a curve of its own over its numbers of photons, errors
-    /// interpolated by their logarithm over that of the time, and the lowest at that time counts: a narrow
-    /// kernel with more photons may beat what is best for either number. None where both share no time.
+    /// Times that variable and fixed radii both reach. Each width has a curve of its own over its numbers of
+    /// photons, errors interpolated by their logarithm over that of the time, and the lowest at that time
+    /// counts: a narrow kernel with more photons may beat what is best for either number. None where both
+    /// share no time.
     pub budgets: Vec<Budget>,
 }
 
