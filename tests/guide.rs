@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use varikernel::glam::UVec2;
-use varikernel::settings::{IrradianceSettings, KernelRadius, Method, Settings};
+use varikernel::settings::{Estimate, IrradianceSettings, KernelRadius, Method, Settings};
 use varikernel::{IrradiancePipeline, RadiusPipeline};
 
 const GUIDE: &str = include_str!("../docs/guide.md");
@@ -23,8 +23,8 @@ fn the_memory_of_1080p_and_4k_is_what_the_library_asks_for() {
     let radii = |settings: Settings| {
         move |size| RadiusPipeline::memory_required(size, &settings).unwrap().at_creation
     };
-    let light = |radius| {
-        let settings = IrradianceSettings { radius, ..IrradianceSettings::default() };
+    let light = |radius, estimate| {
+        let settings = IrradianceSettings { radius, estimate, ..IrradianceSettings::default() };
         move |size| IrradiancePipeline::memory_required(size, &settings).unwrap()
     };
     let expected = [
@@ -32,8 +32,9 @@ fn the_memory_of_1080p_and_4k_is_what_the_library_asks_for() {
         row("radii, the thesis's table, `Settings::thesis()`", radii(Settings::thesis())),
         row("radii, pyramid", radii(Settings::of(Method::Pyramid))),
         row("radii, brute force", radii(Settings::of(Method::BruteForce))),
-        row("light, variable radii", light(KernelRadius::Variable)),
-        row("light, a fixed radius", light(KernelRadius::Fixed(2))),
+        row("light, variable radii", light(KernelRadius::Variable, Estimate::Splat)),
+        row("light, a fixed radius", light(KernelRadius::Fixed(2), Estimate::Splat)),
+        row("light from tables", light(KernelRadius::Variable, Estimate::Tables)),
         row("positions of a depth buffer", |size| 16 * u64::from(size.element_product())),
     ]
     .join("\n");
