@@ -593,8 +593,8 @@ enum varikernel_status varikernel_pipeline_create(const struct varikernel_contex
  *
  * `*radius_texture` is a GL_TEXTURE_2D in GL_R32UI, a usampler2D in your shaders: radii from 1 to MR in
  * pixels (by VARIKERNEL_RULE_EVEN from 0 on), 0 where the mask says that none is needed. `*limited_texture`
- * is one in GL_R8UI that is 1 where MR ended the search, or 0 if the settings ask for none; the pointer may be
- * null. Both belong to the pipeline, are complete without a sampler, and hold until its next frame. Take the
+ * is one in GL_R8UI that is 1 where MR ended the search, or 0 if the settings ask for none; the pointer may
+ * be null. Both belong to the pipeline, are complete without a sampler, and hold until its next frame. Take the
  * names anew each frame: textures may take turns.
  *
  * Fails with MISMATCH, INEXACT, SETTING, OUT_OF_MEMORY, CONTEXT_LOST, OPEN_GL, INVALID_ARGUMENT,

@@ -31,6 +31,24 @@ pub(crate) fn wall() -> Scene {
     scene(text)
 }
 
+/// Surfaces before a camera at the origin that looks along -z over 90 degrees; materials `white` and `glass`.
+pub(crate) fn before_the_camera(surfaces: &str) -> Scene {
+    let text = r#"
+        [camera]
+        position = [0, 0, 0]
+        direction = [0, 0, -1]
+        up = [0, 1, 0]
+        vertical_fov_degrees = 90
+        [lights.lamp]
+        point = [0, 0, 0]
+        intensity = [1, 1, 1]
+        [materials]
+        white = { lambert = [0.5, 0.5, 0.5] }
+        glass = { dielectric = 1.5 }
+    "#;
+    scene(&format!("{text}{surfaces}"))
+}
+
 pub(crate) fn scene(text: &str) -> Scene {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("scene.toml");

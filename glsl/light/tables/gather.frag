@@ -61,12 +61,12 @@ void main()
         light = mix(light, light_in(box_at(pixel, extent, wider)), part);
         radius = mix(radius, float(wider), part);
     }
-    for (int wider = max(2 * known, 1); light.a == 0.0 && wider <= 64; wider *= 2) {
+    for (int wider = max(2 * known, 1); light.a == 0.0 && wider <= WIDEST; wider *= 2) {
         light = light_in(box_at(pixel, extent, wider));
         radius = float(wider);
     }
     // Nothing is lit so far from photons, nor in tiles that are left out.
-    if (light.rgb == vec3(0.0) && sum_of(flux_table, box_at(pixel, extent, 64)).rgb == uvec3(0u)) {
+    if (light.rgb == vec3(0.0) && sum_of(flux_table, box_at(pixel, extent, WIDEST)).rgb == uvec3(0u)) {
         radius = 0.0;
     }
     light_and_radius = vec4(light.rgb, radius);

@@ -1,7 +1,7 @@
 // The test of noise, pooled: how far a width's test lets light be mixed with it.
 
-// Sums of the tests' ratios of radii 1, 2 and 4 at each pixel; a: what differs between pixels and their neighbours
-// over what noise would make of it, weighed by power.
+// Sums of the tests' ratios of radii 1, 2 and 4 at each pixel; a: what differs between pixels and their
+// neighbours over what noise would make of it, weighed by power.
 uniform usampler2DArray fine_tests;
 
 // Between pure widths light is mixed: ratios this far from 1 decide all.
@@ -10,9 +10,9 @@ const float SOFT = 0.4;
 const int POOL = 2;
 const float NOISE_FLOOR = 0.75;
 
-// The picture's noise over that of photons that fall by chance: less where they are emitted evenly, and seen in
-// what differs between narrow boxes. Where light itself changes at once it is as by chance, and never less than
-// NOISE_FLOOR, since few pixels may hold most of the power.
+// The picture's noise over that of photons that fall by chance: less where they are emitted evenly, and seen
+// in what differs between narrow boxes. Where light itself changes at once it is as by chance, and never less
+// than NOISE_FLOOR, since few pixels may hold most of the power.
 float share_of_noise()
 {
     ivec2 last = map_size - 1;

@@ -295,6 +295,13 @@ fn sources() -> [ShaderSource; 7] {
     };
     let test = |label, step| lit(four(label), step).file(glsl!("light/tables/noise.glsl"));
     let of_light = |label, formats: &[TextureFormat]| ShaderSource::new(label).targets(formats.to_vec());
+    let in_steps = |source: ShaderSource| {
+        source
+            .define("MOST_STEPS", MOST_STEPS)
+            .define("BRIGHTEST", BRIGHTEST)
+            .define("MEAN_AREA", face_maps::MEAN_AREA)
+            .file(glsl!("light/tables/steps.glsl"))
+    };
     [
         four(POINTS).file(glsl!("light/tables/points.frag")),
         test(TEST_FINE, 1).file(DITHER).file(glsl!("light/tables/test_fine.frag")),
@@ -302,20 +309,13 @@ fn sources() -> [ShaderSource; 7] {
         lit(of_light(POOL, &[TextureFormat::Rgba32Float; 2]), 2)
             .file(POOLED)
             .file(glsl!("light/tables/pool.frag")),
-        lit(of_light(GATHER, &[TextureFormat::Rgba32Float, TextureFormat::Rgba32Uint]), 1)
-            .define("MOST_STEPS", MOST_STEPS)
-            .define("BRIGHTEST", BRIGHTEST)
-            .define("MEAN_AREA", face_maps::MEAN_AREA)
-            .file(glsl!("light/tables/steps.glsl"))
+        in_steps(lit(of_light(GATHER, &[TextureFormat::Rgba32Float, TextureFormat::Rgba32Uint]), 1))
+            .define("WIDEST", TablesStage::WIDEST)
             .file(DITHER)
             .file(POOLED)
             .file(glsl!("light/tables/gather.frag")),
-        lit(of_light(SMOOTH, &[TextureFormat::Rgba32Float]), 1)
-            .define("MOST_STEPS", MOST_STEPS)
-            .define("BRIGHTEST", BRIGHTEST)
-            .define("MEAN_AREA", face_maps::MEAN_AREA)
+        in_steps(lit(of_light(SMOOTH, &[TextureFormat::Rgba32Float]), 1))
             .define("MOST_SMOOTH", MOST_SMOOTH)
-            .file(glsl!("light/tables/steps.glsl"))
             .file(glsl!("light/tables/area_unit.glsl"))
             .file(glsl!("light/tables/smooth.frag")),
         ShaderSource::new(WIDTHS).targets([TextureFormat::R32Uint]).file(glsl!("light/tables/widths.frag")),

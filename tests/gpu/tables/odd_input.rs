@@ -8,7 +8,7 @@ use varikernel::render::draw_surfaces;
 use varikernel::{DensityStage, Error, Gl, Image, PhotonPoints, SurfaceMaps};
 
 use super::{SIZE, apart, counted, on_pixels, surfaces};
-use crate::stage::scene;
+use crate::stage::before_the_camera;
 use crate::support::egl;
 
 fn gathered(gl: &Gl, surfaces: &SurfaceMaps, photons: &[PhotonPoint]) -> (DensityStage, Image<[f32; 4]>) {
@@ -58,18 +58,8 @@ fn photons_of_no_power_and_none_at_all_are_dark() {
 #[test]
 fn a_scene_of_glass_alone_is_dark() {
     let gl = egl();
-    let scene = scene(
+    let scene = before_the_camera(
         r#"
-        [camera]
-        position = [0, 0, 0]
-        direction = [0, 0, -1]
-        up = [0, 1, 0]
-        vertical_fov_degrees = 60
-        [lights.lamp]
-        point = [0, 1, 0]
-        intensity = [1, 1, 1]
-        [materials]
-        glass = { dielectric = 1.5 }
         [surfaces.ball]
         material = "glass"
         spheres = [{ centre = [0, 0, -3], radius = 1 }]

@@ -7,7 +7,7 @@ use varikernel::render::draw_surfaces;
 use varikernel::{DensityStage, Gl, Image, PhotonPoints, SurfaceMaps};
 
 use super::{apart, definition};
-use crate::stage::scene;
+use crate::stage::before_the_camera;
 use crate::support::egl;
 
 const SIZE: UVec2 = UVec2::new(400, 300);
@@ -17,18 +17,8 @@ const WALL_FROM: u32 = 250;
 /// A plate at distance 1 over the left of the picture, before a wall at distance `far`.
 fn plate_and_wall(gl: &Gl, far: f32) -> SurfaceMaps {
     let side = 4.0 * far;
-    let scene = scene(&format!(
+    let scene = before_the_camera(&format!(
         r#"
-        [camera]
-        position = [0, 0, 0]
-        direction = [0, 0, -1]
-        up = [0, 1, 0]
-        vertical_fov_degrees = 90
-        [lights.lamp]
-        point = [0, 0, 0]
-        intensity = [1, 1, 1]
-        [materials]
-        white = {{ lambert = [0.5, 0.5, 0.5] }}
         [surfaces.a_wall]
         material = "white"
         quads = [[[-{side}, -{side}, -{far}], [{side}, -{side}, -{far}], [{side}, {side}, -{far}],

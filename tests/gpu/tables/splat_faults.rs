@@ -7,7 +7,7 @@ use varikernel::render::draw_surfaces;
 use varikernel::settings::{Estimate, IrradianceSettings, Search, Settings};
 use varikernel::{Gl, Image, IrradiancePipeline, PhotonPoints, SurfaceMaps};
 
-use crate::stage::scene;
+use crate::stage::before_the_camera;
 use crate::support::egl;
 
 const SIZE: UVec2 = UVec2::splat(64);
@@ -16,18 +16,8 @@ const HALF: f32 = 0.225;
 
 /// A wall that fills the picture, number 1, with a plate before it, number 2.
 fn plate(gl: &Gl) -> SurfaceMaps {
-    let scene = scene(
+    let scene = before_the_camera(
         r#"
-        [camera]
-        position = [0, 0, 0]
-        direction = [0, 0, -1]
-        up = [0, 1, 0]
-        vertical_fov_degrees = 90
-        [lights.lamp]
-        point = [0, 0, 0]
-        intensity = [1, 1, 1]
-        [materials]
-        white = { lambert = [0.5, 0.5, 0.5] }
         [surfaces.a_wall]
         material = "white"
         quads = [[[-4, -4, -1], [4, -4, -1], [4, 4, -1], [-4, 4, -1]]]
