@@ -33,7 +33,7 @@ pub(crate) fn wall() -> Scene {
 
 /// Surfaces before a camera at the origin that looks along -z over 90 degrees; materials `white` and `glass`.
 pub(crate) fn before_the_camera(surfaces: &str) -> Scene {
-    let text = r#"
+    let text = "
         [camera]
         position = [0, 0, 0]
         direction = [0, 0, -1]
@@ -45,7 +45,7 @@ pub(crate) fn before_the_camera(surfaces: &str) -> Scene {
         [materials]
         white = { lambert = [0.5, 0.5, 0.5] }
         glass = { dielectric = 1.5 }
-    "#;
+    ";
     scene(&format!("{text}{surfaces}"))
 }
 
