@@ -76,7 +76,7 @@ impl PictureStudy {
     pub fn usual() -> Self {
         Self {
             scenes: Scene::shipped_names().map(str::to_owned).collect(),
-            size: [256; 2],
+            size: [128; 2],
             photons: vec![10_000, 100_000, 1_000_000],
             min_photons: vec![100, 200, 400],
             max_radius: 64,
