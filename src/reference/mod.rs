@@ -4,10 +4,13 @@
 //! [`radius`] is the definition; [`radius_by_table`] gives the same for large maps. [`even`] is that of the
 //! other rule, [`Rule::Even`](crate::settings::Rule::Even). [`pyramid`],
 //! [`naive_mipmap`] and [`as_printed`] mirror what those methods do step by step, so that fetches can be
-//! counted and faults predicted.
+//! counted and faults predicted. [`splat`], [`gather`] and [`tables`] are what light by photons is, and `direct`
+//! what comes without a detour.
 
 pub mod as_printed;
 mod definition;
+#[cfg(feature = "scene")]
+mod direct;
 mod even;
 mod naive_mipmap;
 mod picture;
@@ -16,6 +19,8 @@ mod summed_area_table;
 pub mod tables;
 
 pub use definition::{enough, radius};
+#[cfg(feature = "scene")]
+pub use direct::direct;
 pub use even::even;
 pub use naive_mipmap::naive_mipmap;
 pub use picture::{Shown, gather, gather_at, photon_density, photon_power, splat};

@@ -5,6 +5,7 @@
 //! shadow maps, rays or bounce maps.
 
 mod account;
+mod antialias;
 mod bounce_map;
 mod cube_map;
 mod direct;
@@ -12,6 +13,7 @@ mod landed;
 mod layers;
 mod live;
 mod nearest;
+mod neighbours;
 mod photon_sums;
 mod prepared;
 mod reference;
@@ -42,7 +44,8 @@ use crate::light::{self, IrradiancePipeline};
 use crate::maps::{PhotonPoints, SurfaceMaps};
 use crate::photon::{Emission, PhotonPoint, TraceSettings};
 use crate::scene::Scene;
-use crate::settings::{KernelRadius, PictureSettings};
+use crate::settings::{KernelRadius, PictureSettings, PixelFilter};
+use antialias::EdgeSamples;
 use landed::{Landed, Wanted};
 use prepared::Prepared;
 use seen_through::seen_through;
@@ -67,6 +70,7 @@ pub struct Renderer {
     surfaces: SurfaceMaps,
     light: TracedLight,
     bent: Vec<Place>,
+    edges: EdgeSamples,
     traced: Traced,
     pipeline: IrradiancePipeline,
     shade: ShadeStage,
@@ -123,7 +127,7 @@ impl Renderer {
     }
 
     fn assemble(gl: &Gl, prepared: Prepared, traced: Traced, settings: &PictureSettings) -> Result<Self> {
-        let Prepared { surfaces, traced: light, bent } = prepared;
+        let Prepared { surfaces, traced: light, bent, edges } = prepared;
         let mut pipeline = IrradiancePipeline::new(gl, surfaces.size(), settings.irradiance())?;
         pipeline.count(&surfaces, &traced.points)?;
         Ok(Self {
@@ -132,6 +136,7 @@ impl Renderer {
             surfaces,
             light,
             bent,
+            edges,
             traced,
             pipeline,
         })
@@ -143,8 +148,8 @@ impl Renderer {
         &self.surfaces
     }
 
-    /// The picture with the radius, kernel and estimate of `settings`; its size and shadow rays are those of
-    /// before.
+    /// The picture with the radius, kernel, estimate and filter of `settings`; its size, shadow rays and
+    /// samples at edges are those of before.
     ///
     /// # Errors
     /// As [`Renderer::new`], and [`Error::Inexact`](crate::Error::Inexact) where a pixel has more photons
@@ -154,13 +159,14 @@ impl Renderer {
         let asked = settings.irradiance();
         self.pipeline.change(asked)?;
         self.count_unless_known()?;
-        self.light.seen_through = seen_through(
+        let (irradiance_of_bent, seen_through) = seen_through(
             self.surfaces.view(),
             &self.bent,
             self.traced.landed.as_mut(),
             Wanted::of(&asked),
             settings.kernel,
         );
+        self.light.seen_through = seen_through;
         self.pipeline.clear_light();
         let irradiance = self.pipeline.spread(&self.surfaces, &self.traced.points)?;
         let shaded = self.shade.shade(&self.surfaces, irradiance, &self.light)?;
@@ -176,7 +182,7 @@ impl Renderer {
             (KernelRadius::Fixed(radius), None) => (Image::filled(size, radius), Image::filled(size, 0)),
             (KernelRadius::Variable, None) => unreachable!("variable radii were searched"),
         };
-        let layers = Layers {
+        let mut layers = Layers {
             beauty: shaded.beauty.map(rgb),
             direct: self.light.direct.map(rgb),
             indirect: shaded.indirect.map(rgb),
@@ -188,6 +194,9 @@ impl Renderer {
             depth: position.map(|[.., depth]| depth),
             albedo: self.surfaces.read_albedo()?.map(rgb),
         };
+        if !self.edges.is_empty() || settings.filter != PixelFilter::Box {
+            self.edges.spread_over_areas(settings, &mut layers, &irradiance_of_bent);
+        }
         let account = self.account_of(&position, &normal, &irradiance, &layers.limited)?;
         Ok((layers, account))
     }

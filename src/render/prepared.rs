@@ -1,11 +1,7 @@
 //! What a picture needs before any photon: what its pixels show, and direct light there.
 
-use std::f64::consts::PI;
-
-use glam::DVec3;
-use rayon::prelude::*;
-
-use super::direct::{self, Dice};
+use super::antialias::EdgeSamples;
+use super::direct::DirectRays;
 use super::sight::{Place, Sight};
 use super::{Progress, add};
 use crate::error::Result;
@@ -24,6 +20,7 @@ pub(super) struct Prepared {
     pub(super) surfaces: SurfaceMaps,
     pub(super) traced: TracedLight,
     pub(super) bent: Vec<Place>,
+    pub(super) edges: EdgeSamples,
 }
 
 impl Prepared {
@@ -36,7 +33,7 @@ impl Prepared {
         let view = scene.view(settings.size);
         let mut surfaces = SurfaceStage::new(gl)?.draw(scene, view)?;
         progress(Progress { stage: "direct light", done: 0.0 });
-        let sight = Sight::new(scene, &view);
+        let mut sight = Sight::new(scene, &view);
         sight.paint(&mut surfaces)?;
         #[expect(clippy::cast_precision_loss, reason = "a share")]
         let straight = sight.straight.len() as f64 / (sight.straight.len() + sight.bent.len()).max(1) as f64;
@@ -46,78 +43,31 @@ impl Prepared {
         for &(pixel, radiance) in &sight.lights {
             add(&mut direct, pixel, radiance.as_dvec3());
         }
-        match settings.direct {
-            DirectLight::Traced => {
-                trace(scene, &sight.straight, settings, settings.seed, &mut direct, &mut show);
-            }
+        let rays = DirectRays { scene, samples: settings.light_samples, seed: settings.seed };
+        let found = match settings.direct {
+            DirectLight::Traced => rays.reflected(settings.size, &sight.straight, &mut show),
             DirectLight::ShadowMap => {
-                map(gl, scene, &surfaces, &sight.straight, settings, &mut direct, &mut show)?;
+                let maps = &mut ShadowMaps::new(gl, scene, settings.size)?;
+                maps.reflected(scene, &surfaces, &sight.straight, settings, &mut show)?
             }
-        }
-        // Places in mirrors and behind glass have seeds of their own.
-        let mut show = |done: f64| {
-            progress(Progress { stage: "direct light", done: straight + (1.0 - straight) * done });
         };
-        trace(scene, &sight.bent, settings, settings.seed.wrapping_add(1 << 32), &mut direct, &mut show);
+        // Places in mirrors and behind glass have seeds of their own.
+        let rays = DirectRays { seed: settings.seed.wrapping_add(1 << 32), ..rays };
+        let through = rays.reflected(settings.size, &sight.bent, &mut |done| {
+            progress(Progress { stage: "direct light", done: straight + (1.0 - straight) * done });
+        });
+        for (place, radiance) in sight.straight.iter().zip(found).chain(sight.bent.iter().zip(through)) {
+            add(&mut direct, place.pixel, radiance);
+        }
         for place in &sight.straight {
             let (x, y) = (place.pixel % settings.size.x, place.pixel / settings.size.x);
             let [red, green, blue, _] = direct.at(x, y);
             direct.set(x, y, [red, green, blue, 1.0]);
         }
+        progress(Progress { stage: "edges", done: 0.0 });
+        let rays = DirectRays { seed: settings.seed.wrapping_add(1 << 33), ..rays };
+        let edges = EdgeSamples::new(&rays, &view, &mut sight, &direct, settings);
         let seen_through = Image::filled(settings.size, [0.0; 4]);
-        Ok(Self { surfaces, traced: TracedLight { direct, seen_through }, bent: sight.bent })
+        Ok(Self { surfaces, traced: TracedLight { direct, seen_through }, bent: sight.bent, edges })
     }
-}
-
-/// Adds the light at places by shadow rays, in parts so that the progress can be told.
-fn trace(
-    scene: &Scene,
-    places: &[Place],
-    settings: &PictureSettings,
-    seed: u64,
-    direct: &mut Image<[f32; 4]>,
-    show: &mut dyn FnMut(f64),
-) {
-    let mut done = 0;
-    for (number, part) in (0..).zip(places.chunks(1 << 14)) {
-        let found: Vec<DVec3> = part
-            .par_iter()
-            .enumerate()
-            .map(|(index, place)| {
-                let index = u32::try_from(index).expect("a part is small");
-                let mut dice = Dice::new(seed, (number << 14) + index);
-                let samples = settings.light_samples;
-                direct::reflected(scene, place, samples, &mut dice)
-            })
-            .collect();
-        for (place, radiance) in part.iter().zip(found) {
-            add(direct, place.pixel, radiance);
-        }
-        done += part.len();
-        #[expect(clippy::cast_precision_loss, reason = "a share")]
-        show(done as f64 / places.len() as f64);
-    }
-}
-
-/// Adds the light at places that are seen straight by shadow maps.
-fn map(
-    gl: &Gl,
-    scene: &Scene,
-    surfaces: &SurfaceMaps,
-    places: &[Place],
-    settings: &PictureSettings,
-    direct: &mut Image<[f32; 4]>,
-    show: &mut dyn FnMut(f64),
-) -> Result<()> {
-    let mut dice = Dice::new(settings.seed, 0);
-    let mut number = || dice.number();
-    let lights = scene.lights().iter();
-    let lights: Vec<_> = lights.flat_map(|light| light.places(settings.light_samples, &mut number)).collect();
-    let irradiance = ShadowMaps::new(gl, scene, surfaces.size())?.irradiance(surfaces, &lights, show)?;
-    for place in places {
-        let (x, y) = (place.pixel % settings.size.x, place.pixel / settings.size.x);
-        let [red, green, blue, _] = irradiance.at(x, y).map(f64::from);
-        add(direct, place.pixel, place.share.as_dvec3() * DVec3::new(red, green, blue) / PI);
-    }
-    Ok(())
 }

@@ -48,7 +48,9 @@ impl Reference {
         progress: &mut dyn FnMut(Progress),
     ) -> Result<Self> {
         settings.validate()?;
-        let Prepared { surfaces, traced: light, bent } = Prepared::new(gl, scene, settings, progress)?;
+        // Power is of pixels' own photons, on what their middles show.
+        let settings = &PictureSettings { antialias: 1, ..*settings };
+        let Prepared { surfaces, traced: light, bent, .. } = Prepared::new(gl, scene, settings, progress)?;
         Ok(Self {
             gl: gl.clone(),
             surfaces,
@@ -90,7 +92,7 @@ impl Reference {
         // The counts are checked before they are believed.
         let power = self.density.power().unwrap_or_else(|| unreachable!("made without units"));
         add_up(&mut self.power, &power.read()?);
-        let through = seen_through(&view, &self.bent, traced.landed.as_mut(), wanted, Kernel::Box);
+        let (_, through) = seen_through(&view, &self.bent, traced.landed.as_mut(), wanted, Kernel::Box);
         add_up(&mut self.seen_through, &through);
         self.seeds += 1;
         self.cut_off_shares += traced.cut_off_share;

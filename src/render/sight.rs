@@ -35,6 +35,18 @@ pub(super) struct Place {
     pub(super) surface: f32,
 }
 
+/// What a ray from the camera meets first, whatever it is made of.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct First {
+    /// Number of the surface: its index plus 1; 0 for nothing.
+    pub(super) surface: u32,
+    pub(super) position: Vec3,
+    /// On the side that is seen.
+    pub(super) normal: Vec3,
+    /// Of a diffuse surface.
+    pub(super) reflectance: Vec3,
+}
+
 /// What all pixels see.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Sight {
@@ -42,6 +54,8 @@ pub(super) struct Sight {
     pub(super) straight: Vec<Place>,
     /// Those that are seen in mirrors and through glass.
     pub(super) bent: Vec<Place>,
+    /// Of each ray.
+    pub(super) firsts: Vec<First>,
     /// Pixels, and the radiance of what shines by itself in them.
     pub(super) lights: Vec<(u32, Vec3)>,
     /// Pixels that show a diffuse surface straight, and its reflectance; only where it differs within a
@@ -58,7 +72,7 @@ impl Sight {
             .map(|y| {
                 let mut sight = Self::default();
                 for x in 0..width {
-                    sight.follow(scene, y * width + x, &view.ray(x, y), Vec3::ONE, 0.0, 0);
+                    sight.look(scene, y * width + x, &view.ray(x, y));
                 }
                 sight
             })
@@ -67,6 +81,7 @@ impl Sight {
         for row in rows {
             all.straight.extend(row.straight);
             all.bent.extend(row.bent);
+            all.firsts.extend(row.firsts);
             all.lights.extend(row.lights);
             all.albedos.extend(row.albedos);
         }
@@ -86,6 +101,12 @@ impl Sight {
         surfaces.set_albedo(&albedo)
     }
 
+    /// Adds what a ray from the camera sees.
+    pub(super) fn look(&mut self, scene: &Scene, pixel: u32, ray: &Ray) {
+        self.firsts.push(First::default());
+        self.follow(scene, pixel, ray, Vec3::ONE, 0.0, 0);
+    }
+
     fn follow(&mut self, scene: &Scene, pixel: u32, ray: &Ray, share: Vec3, way: f64, depth: u32) {
         let Some(hit) = scene.cast(ray) else { return };
         let light = scene.emission(&hit, ray.direction);
@@ -95,6 +116,16 @@ impl Sight {
         let distance = way + hit.distance;
         let side = if hit.normal.dot(ray.direction) <= 0.0 { 1.0 } else { -1.0 };
         let facing = side * hit.normal;
+        if depth == 0
+            && let Some(first) = self.firsts.last_mut()
+        {
+            *first = First {
+                surface: hit.surface + 1,
+                position: hit.position.as_vec3(),
+                normal: facing.as_vec3(),
+                reflectance: Vec3::ZERO,
+            };
+        }
         let mut go = |direction: DVec3, side: DVec3, share: Vec3| {
             if depth < DEEPEST && share.max_element() >= LEAST_SHARE {
                 let ray = Ray { origin: scene.start(hit.position, side), direction };
@@ -103,6 +134,11 @@ impl Sight {
         };
         match scene.scattering(&hit) {
             Scattering::Lambert(reflectance) => {
+                if depth == 0
+                    && let Some(first) = self.firsts.last_mut()
+                {
+                    first.reflectance = reflectance;
+                }
                 if depth == 0 && scene.has_patterns() {
                     self.albedos.push((pixel, reflectance));
                 }

@@ -14,10 +14,10 @@
 
 use std::f64::consts::PI;
 
-use glam::{DVec3, IVec2, UVec2};
+use glam::{DVec3, IVec2};
 use rayon::prelude::*;
 
-use super::nearest::LEAST_AGREEMENT;
+use super::neighbours::Neighbours;
 use super::photon_sums::PhotonSums;
 use super::rings::{DISCS, Held, mean, radius};
 use super::sight::Place;
@@ -95,22 +95,7 @@ fn ratio(fine: &Held, coarse: &Held, area: f64, usual: f64) -> f64 {
     if variance > 0.0 { (mean(coarse.power - fine.power).powi(2) / variance).min(MOST) / LIMIT } else { 0.0 }
 }
 
-/// Places by pixels.
-struct Neighbours<'a> {
-    size: UVec2,
-    places: &'a [Place],
-    /// Where the places of each pixel begin, and where the last end.
-    begins: Vec<usize>,
-}
-
-impl<'a> Neighbours<'a> {
-    fn new(size: UVec2, places: &'a [Place]) -> Self {
-        let begins = (0..=size.element_product())
-            .map(|pixel| places.partition_point(|place| place.pixel < pixel))
-            .collect();
-        Self { size, places, begins }
-    }
-
+impl Neighbours<'_> {
     /// The side of what a pixel shows around a place: to the places of the next pixels, or `straight` without
     /// any.
     fn side(&self, place: &Place, straight: f64) -> f64 {
@@ -139,30 +124,12 @@ impl<'a> Neighbours<'a> {
         }
         sum / count
     }
-
-    /// The places of the pixel that is so far away, on the same surface.
-    fn of(&self, place: &Place, away: IVec2) -> impl Iterator<Item = usize> {
-        let home = UVec2::new(place.pixel % self.size.x, place.pixel / self.size.x).as_ivec2();
-        let at = home + away;
-        let inside = at.cmpge(IVec2::ZERO).all() && at.cmplt(self.size.as_ivec2()).all();
-        let all = if inside {
-            let at = at.as_uvec2();
-            let pixel = (at.y * self.size.x + at.x) as usize;
-            self.begins[pixel]..self.begins[pixel + 1]
-        } else {
-            0..0
-        };
-        all.filter(|&index| {
-            let other = &self.places[index];
-            (other.surface - place.surface).abs() < 0.5 && other.normal.dot(place.normal) > LEAST_AGREEMENT
-        })
-    }
 }
 
 #[cfg(test)]
 #[expect(clippy::cast_precision_loss, reason = "small numbers, and random bits")]
 mod tests {
-    use glam::Vec3;
+    use glam::{UVec2, Vec3};
 
     use super::*;
     use crate::photon::PhotonPoint;

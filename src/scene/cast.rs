@@ -72,6 +72,11 @@ impl Target {
         nearest
     }
 
+    /// Whether anything is met before a distance along the ray.
+    pub(super) fn blocks(&self, ray: &Ray, limit: f64) -> bool {
+        self.trees.iter().any(|tree| tree.blocks(ray, limit, |ray, primitive| self.distance(ray, primitive)))
+    }
+
     /// Distance along the ray to one primitive.
     pub(super) fn distance(&self, ray: &Ray, primitive: u32) -> Option<f64> {
         let primitive = primitive as usize;

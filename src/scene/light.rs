@@ -5,6 +5,7 @@ use std::f64::consts::{PI, TAU};
 use glam::{DVec2, DVec3, Vec2, Vec3};
 
 use super::texture::PlacedTexture;
+use super::triangle_light::irradiance_of_triangle;
 
 /// A light with its name in the scene file.
 #[derive(Clone, Debug, PartialEq)]
@@ -68,6 +69,8 @@ pub struct LightSample {
 const MEAN_STEPS: [f64; 2] = [8.0, 256.0];
 /// Samples of all triangles of a light, more or less.
 const MEAN_SAMPLES: f64 = 4e6;
+/// With more triangles than this it is cheaper to sample a light than to add them all up.
+const MOST_ADDED_UP: usize = 64;
 /// Each triangle gets places, and the light power, as if its mean radiance were at least this share of that
 /// of the whole image: a bright texel that no sample of the mean met is found all the same.
 const LEAST_RADIANCE: f64 = 0.05;
@@ -130,6 +133,25 @@ impl AreaLight {
     #[must_use]
     pub fn radiance(&self) -> Vec3 {
         self.radiance
+    }
+
+    /// Radiance at the shares of a triangle's second and third corner.
+    #[must_use]
+    pub fn radiance_at(&self, triangle: usize, shares: DVec2) -> DVec3 {
+        let texel = self.texture.as_ref().map_or(DVec3::ONE, |texture| texture.at(triangle, shares));
+        self.radiance.as_dvec3() * texel
+    }
+
+    /// Irradiance at `position`, on the side to which `normal` points, if nothing is between, the light itself
+    /// neither: in closed form ([`irradiance_of_triangle`]), which a light with a texture or with many
+    /// triangles has not.
+    #[must_use]
+    pub fn irradiance(&self, position: DVec3, normal: DVec3) -> Option<DVec3> {
+        if self.texture.is_some() || self.triangles.len() > MOST_ADDED_UP {
+            return None;
+        }
+        let of = |triangle| irradiance_of_triangle(triangle, position, normal);
+        Some(self.radiance.as_dvec3() * self.triangles.iter().map(of).sum::<f64>())
     }
 
     /// The place for a point (u, v) of the unit square, by power among triangles and by area on each.

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::light::{Light, LightSample, LightShape};
 
-/// A place that a light shines from, with its part of the light.
+/// A place that a light shines from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LightPlace {
     /// In scene units.
@@ -34,33 +34,33 @@ impl LightPlace {
 }
 
 impl Light {
-    /// The point of a point light, or places spread over an area light by its power, one in each cell of a
-    /// square grid; `number` draws from 0 to 1, twice for each.
-    pub(crate) fn places(&self, samples: u32, number: &mut dyn FnMut() -> f64) -> Vec<LightPlace> {
+    /// Whether all places are the same one.
+    pub(crate) fn is_point(&self) -> bool {
+        matches!(self.shape, LightShape::Point { .. })
+    }
+
+    /// Irradiance at `position`, on the side to which `normal` points, if nothing is between; nothing if only
+    /// samples can tell.
+    pub(crate) fn irradiance(&self, position: DVec3, normal: DVec3) -> Option<DVec3> {
         match &self.shape {
-            LightShape::Point { position, direction, half_angle, intensity } => vec![LightPlace {
+            LightShape::Point { .. } => Some(self.place([0.0; 2]).irradiance(position, normal)),
+            LightShape::Area(area) => area.irradiance(position, normal),
+        }
+    }
+
+    /// The point of a point light, or the place of an area light for a point of the unit square, by power. It
+    /// stands for all of the light.
+    pub(crate) fn place(&self, uv: [f64; 2]) -> LightPlace {
+        match &self.shape {
+            LightShape::Point { position, direction, half_angle, intensity } => LightPlace {
                 position: position.as_dvec3(),
                 axis: direction.as_dvec3(),
                 half_angle: Some(*half_angle),
                 intensity: intensity.as_dvec3(),
-            }],
+            },
             LightShape::Area(area) => {
-                let side = f64::from(samples).sqrt().floor().max(1.0);
-                let place = |index| {
-                    // What is left over after the square grid is taken at random.
-                    let index = f64::from(index);
-                    let (row, column) = ((index / side).floor(), index % side);
-                    let (u, v) = (number(), number());
-                    let uv = if row < side { [(column + u) / side, (row + v) / side] } else { [u, v] };
-                    let LightSample { position, normal, intensity } = area.sample(uv);
-                    LightPlace {
-                        position,
-                        axis: normal,
-                        half_angle: None,
-                        intensity: intensity / f64::from(samples),
-                    }
-                };
-                (0..samples).map(place).collect()
+                let LightSample { position, normal, intensity } = area.sample(uv);
+                LightPlace { position, axis: normal, half_angle: None, intensity }
             }
         }
     }

@@ -18,6 +18,7 @@ mod shipped;
 mod source;
 mod texture;
 mod tree;
+mod triangle_light;
 
 pub use cast::Hit;
 pub(crate) use geometry::plane;
@@ -28,6 +29,7 @@ pub use light::{AreaLight, Light, LightSample, LightShape, area};
 pub(crate) use light_place::LightPlace;
 pub use material::{Material, Scattering};
 pub use texture::{PlacedTexture, Texture, Wrap};
+pub use triangle_light::irradiance_of_triangle;
 
 pub use crate::view::{Camera, Ray};
 
@@ -151,6 +153,12 @@ impl Scene {
     pub fn cast(&self, ray: &Ray) -> Option<Hit> {
         let (distance, primitive) = self.target.nearest(ray)?;
         Some(self.target.hit(&self.geometry, ray, distance, primitive))
+    }
+
+    /// Whether the ray meets anything before a distance in scene units.
+    #[must_use]
+    pub fn is_blocked(&self, ray: &Ray, distance: f64) -> bool {
+        self.target.blocks(ray, distance)
     }
 
     /// Where the ray meets one primitive, whatever is before it.

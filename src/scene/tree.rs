@@ -81,6 +81,25 @@ impl Tree {
         limit: f64,
         meet: impl Fn(&Ray, u32) -> Option<f64>,
     ) -> Option<(f64, u32)> {
+        // Rounded up, so that a box that begins there is still opened.
+        self.search(ray, limit, meet, rounded_up)
+    }
+
+    /// Whether anything is met before `limit`.
+    pub(super) fn blocks(&self, ray: &Ray, limit: f64, meet: impl Fn(&Ray, u32) -> Option<f64>) -> bool {
+        // The first that is found ends the search.
+        self.search(ray, limit, meet, |_| 0.0).is_some()
+    }
+
+    /// The last primitive that was found before `limit` and all found earlier; `rest` tells how far to look
+    /// further when one is found.
+    fn search(
+        &self,
+        ray: &Ray,
+        limit: f64,
+        meet: impl Fn(&Ray, u32) -> Option<f64>,
+        rest: impl Fn(f64) -> f32,
+    ) -> Option<(f64, u32)> {
         // From far away f32 is too coarse: such a ray starts where it may first meet something.
         let to_centre = self.centre - ray.origin;
         let skipped = if to_centre.length_squared() > 4.0 * self.extent * self.extent {
@@ -91,7 +110,8 @@ impl Tree {
         let start = Ray { origin: ray.origin + skipped * ray.direction, ..*ray };
 
         let mut nearest = (limit - skipped, u32::MAX);
-        let box_ray = BoxRay::new_inf(start.origin.as_vec3().into(), start.direction.as_vec3().into());
+        let [origin, direction] = [start.origin, start.direction].map(|vector| vector.as_vec3().into());
+        let box_ray = BoxRay::new(origin, direction, 0.0, rounded_up(nearest.0.max(0.0)));
         self.boxes.ray_traverse(box_ray, &mut RayHit::none(), |_, place| {
             let primitive = self.members[self.boxes.primitive_indices[place] as usize];
             let distance = meet(&start, primitive).unwrap_or(f64::INFINITY);
@@ -99,13 +119,16 @@ impl Tree {
                 return f32::INFINITY;
             }
             nearest = (distance, primitive);
-            // Rounded up, so that a box that begins there is still opened.
-            #[expect(clippy::cast_possible_truncation, reason = "rounded up next")]
-            let limit = (distance as f32).next_up();
-            limit
+            rest(distance)
         });
         (nearest.1 != u32::MAX).then_some((nearest.0 + skipped, nearest.1))
     }
+}
+
+fn rounded_up(distance: f64) -> f32 {
+    #[expect(clippy::cast_possible_truncation, reason = "rounded up next")]
+    let distance = distance as f32;
+    distance.next_up()
 }
 
 /// A number from 0 to 1 of a primitive's own: without it the builder, which pairs boxes that are alike, would

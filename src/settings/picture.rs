@@ -2,8 +2,11 @@
 
 use glam::UVec2;
 
-use super::{Estimate, IrradianceSettings, Kernel, KernelRadius, Search, Settings};
+use super::{Estimate, IrradianceSettings, Kernel, KernelRadius, PixelFilter, Search, Settings};
 use crate::error::{Error, Result};
+
+/// As many samples as a pixel at an edge may have.
+pub const MOST_ANTIALIAS: u32 = 1024;
 
 /// How photons find what they meet first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,9 +52,14 @@ pub struct PictureSettings {
     pub estimate: Estimate,
     /// Shadow rays or shadow maps.
     pub direct: DirectLight,
-    /// Shadow rays of each pixel, or cubes of shadow maps, for each area light; a square number is best, at
-    /// least 1.
+    /// Shadow rays of a pixel in penumbra to each area light at first, of which up to 16 times as many follow
+    /// where noise asks for them; or cubes of shadow maps. A power of 4 is best, at least 1.
     pub light_samples: u32,
+    /// Samples of a pixel at an edge, spread over its area, from 1 to [`MOST_ANTIALIAS`]; 1 shows what pixels'
+    /// middles do.
+    pub antialias: u32,
+    /// How a pixel weighs the light around its middle.
+    pub filter: PixelFilter,
     /// The seed of the places on the lights.
     pub seed: u64,
 }
@@ -72,6 +80,8 @@ impl Default for PictureSettings {
             estimate: Estimate::Splat,
             direct: DirectLight::Traced,
             light_samples: 16,
+            antialias: 8,
+            filter: PixelFilter::Box,
             seed: 1,
         }
     }
@@ -110,6 +120,10 @@ impl PictureSettings {
         irradiance.validate()?;
         if self.light_samples == 0 {
             return refuse("light_samples", "0".to_owned(), "a light takes at least 1 shadow ray");
+        }
+        if !(1..=MOST_ANTIALIAS).contains(&self.antialias) {
+            let reason = format!("a pixel at an edge takes 1 to {MOST_ANTIALIAS} samples");
+            return refuse("antialias", self.antialias.to_string(), &reason);
         }
         Ok(())
     }

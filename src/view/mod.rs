@@ -6,7 +6,7 @@ mod ray;
 pub use camera::Camera;
 pub use ray::Ray;
 
-use glam::{DVec3, Mat4, UVec2, Vec3};
+use glam::{DVec2, DVec3, Mat4, UVec2, Vec3};
 
 use crate::error::{Error, Result};
 
@@ -169,7 +169,12 @@ impl View {
     /// The ray through the middle of a pixel.
     #[must_use]
     pub fn ray(&self, x: u32, y: u32) -> Ray {
-        let [x, y] = [x, y].map(|index| f64::from(index) + 0.5);
+        self.ray_at(DVec2::new(f64::from(x), f64::from(y)) + 0.5)
+    }
+
+    /// The ray through a place of the picture, in pixels from its corner.
+    #[must_use]
+    pub fn ray_at(&self, DVec2 { x, y }: DVec2) -> Ray {
         let direction = self.to_corner + x * self.to_right + y * self.to_next_row;
         Ray { origin: self.position.as_dvec3(), direction: direction.normalize() }
     }

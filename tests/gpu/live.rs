@@ -35,6 +35,7 @@ fn picture_settings(live: &LiveSettings) -> PictureSettings {
         radius: live.irradiance.radius,
         kernel: live.irradiance.kernel,
         light_samples: 16,
+        antialias: 1,
         ..PictureSettings::default()
     }
 }

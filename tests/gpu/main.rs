@@ -3,11 +3,13 @@
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
+mod antialias;
 mod approximate;
 mod bounce_map;
 mod calls;
 mod certificate;
 mod density;
+mod direct;
 mod driver;
 mod even;
 mod exactness;

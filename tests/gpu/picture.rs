@@ -37,7 +37,8 @@ fn every_picture_of_the_shipped_scenes_is_finite() {
     let gl = egl();
     for name in Scene::shipped_names() {
         let scene = Scene::shipped(name).unwrap();
-        let settings = settings(40, Kernel::Cone, KernelRadius::Variable);
+        let usual = settings(40, Kernel::Cone, KernelRadius::Variable);
+        let settings = PictureSettings { antialias: 4, ..usual };
         // Few photons: boxes without any, kernels over edges, places in mirrors without photons.
         let fewest = u32::try_from(scene.lights().len()).unwrap();
         for photons in [fewest, 3_000] {
@@ -111,6 +112,8 @@ fn settings_out_of_range_are_refused_by_name() {
         (PictureSettings { max_radius: 97, ..usual }, "max_radius"),
         (PictureSettings { radius: KernelRadius::Fixed(0), ..usual }, "radius"),
         (PictureSettings { light_samples: 0, ..usual }, "light_samples"),
+        (PictureSettings { antialias: 0, ..usual }, "antialias"),
+        (PictureSettings { antialias: 1025, ..usual }, "antialias"),
         (PictureSettings { size: UVec2::new(0, 8), ..usual }, "size"),
     ] {
         let error = Renderer::with_photons(&gl, &scene, &settings, &[]).unwrap_err().to_string();

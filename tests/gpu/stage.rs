@@ -62,6 +62,7 @@ pub(crate) fn settings(side: u32, kernel: Kernel, radius: KernelRadius) -> Pictu
         kernel,
         radius,
         light_samples: 1,
+        antialias: 1,
         ..PictureSettings::default()
     }
 }

@@ -18,7 +18,7 @@ const ROOMS: &[(&str, &[&str])] = &[
     ("context", &["gl"]),
     ("scene", &["view"]),
     ("photon", &["scene", "view"]),
-    ("reference", &["photon", "view"]),
+    ("reference", &["photon", "scene", "view"]),
     ("maps", &["gl", "photon", "reference", "view"]),
     ("radius", &["gl", "maps"]),
     ("light", &["gl", "maps", "radius"]),

@@ -17,7 +17,7 @@ const SHARED: [(&str, &[(&str, &str)]); 3] = [
         &[
             ("context", "the OpenGL context that a host has, or that the library opens"),
             ("density", "photons per pixel: the map, and the stage that counts them"),
-            ("direct", "light that comes without a detour: all at once, or step by step"),
+            ("direct", "light that comes without a detour: all at once, step by step, and its definition"),
             ("even", "radii by the rule of even density: with OpenGL, and by their definition"),
             ("frame", "what a host brings each frame, for Rust and for C"),
             ("irradiance", "what reaches a surface: the map, the stages, their settings, their C interface"),

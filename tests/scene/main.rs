@@ -5,6 +5,7 @@
 #![expect(clippy::float_cmp, reason = "where numbers are compared without a margin, they are exact")]
 
 mod cast;
+mod direct;
 mod exported;
 mod files;
 mod gltf;

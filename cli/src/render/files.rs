@@ -33,6 +33,8 @@ pub(super) fn attributes(args: &Args, settings: &PictureSettings, scene: &str) -
     attributes.extend([
         Attribute::text("varikernel.first_bounce", format!("{:?}", args.first_bounce)),
         Attribute::text("varikernel.estimate", format!("{:?}", settings.estimate)),
+        Attribute::integer("varikernel.antialias", settings.antialias),
+        Attribute::text("varikernel.filter", format!("{:?}", settings.filter)),
     ]);
     // Light from tables asks for no kernels.
     if settings.estimate != Estimate::Tables {

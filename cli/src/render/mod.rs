@@ -59,11 +59,13 @@ pub(crate) struct Args {
 
     /// Make a reference: each pixel keeps its own photons only, averaged over this many seeds, saved as it
     /// goes. The seeds are those after --seed, so that it holds no photon of the picture that it is compared
-    /// with. Nothing is spread, so that options about kernels are refused.
+    /// with. Nothing is spread, and pixels show what their middles do, so that options about kernels and
+    /// edges are refused.
     #[arg(long, value_name = "SEEDS", num_args = 0..=1, default_missing_value = "16")]
     #[arg(allow_negative_numbers = true)]
     #[arg(value_parser = whole_checked_later(1..=u32::MAX))]
     #[arg(conflicts_with_all = ["light", "radius", "first_bounce", "kernel", "min_photons", "max_radius"])]
+    #[arg(conflicts_with_all = ["antialias", "filter"])]
     #[arg(help_heading = "Photons")]
     reference: Option<u32>,
 

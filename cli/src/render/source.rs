@@ -8,7 +8,7 @@ use varikernel::Image;
 use varikernel::context::DeviceChoice;
 use varikernel::image::ToneMap;
 use varikernel::photon::TraceSettings;
-use varikernel::settings::{Kernel, MAX_PICTURE_RADIUS, PictureSettings};
+use varikernel::settings::{Kernel, MAX_PICTURE_RADIUS, MOST_ANTIALIAS, PictureSettings, PixelFilter};
 
 use crate::numbers::{fraction, whole, whole_checked_later};
 use crate::photons::{bounces_help, parse_count};
@@ -61,11 +61,24 @@ pub(crate) struct Source {
     #[arg(help_heading = "Kernels")]
     pub(crate) kernel: Option<Kernel>,
 
-    /// Shadow rays for each pixel and area light; places with shadow maps on each, with --direct shadow-map.
+    /// Shadow rays of a pixel in penumbra to each area light, of which up to 16 times as many follow where they
+    /// are noisy; places with shadow maps on each light, with --direct shadow-map.
     #[arg(long, default_value_t = 16, value_name = "NUMBER", allow_negative_numbers = true)]
     #[arg(value_parser = whole_checked_later(1..=u32::MAX))]
     #[arg(help_heading = "Direct light")]
     pub(crate) light_samples: u32,
+
+    #[arg(help = format!("Samples of a pixel at an edge, 1 to {MOST_ANTIALIAS}; 1 shows what pixels' middles do"))]
+    #[arg(long, value_name = "NUMBER", allow_negative_numbers = true)]
+    #[arg(default_value_t = PictureSettings::default().antialias)]
+    #[arg(value_parser = whole_checked_later(1..=MOST_ANTIALIAS))]
+    #[arg(help_heading = "Picture")]
+    pub(crate) antialias: u32,
+
+    /// How a pixel weighs the light around its middle.
+    #[arg(long, value_enum, default_value_t)]
+    #[arg(help_heading = "Picture")]
+    pub(crate) filter: PixelFilter,
 
     /// Brightness of a PNG, in stops: each doubles the light [default: what suits the picture].
     #[arg(long, value_name = "STOPS", value_parser = fraction::<f32>("-1.5"), allow_negative_numbers = true)]
@@ -91,6 +104,8 @@ impl Source {
             max_radius: self.max_radius.unwrap_or(usual.max_radius),
             kernel: self.kernel.unwrap_or(usual.kernel),
             light_samples: self.light_samples,
+            antialias: self.antialias,
+            filter: self.filter,
             seed: self.seed,
             ..usual
         }

@@ -78,9 +78,14 @@ fn an_exr_holds_every_layer_and_a_png_a_picture() {
         assert!(names.contains(name), "{name} is not in {names:?}");
     }
     let attributes = attributes(&place, "a.exr");
-    for (name, value) in
-        [("direct", "Traced"), ("first_bounce", "Rays"), ("light_samples", "I32(1)"), ("estimate", "Tables")]
-    {
+    for (name, value) in [
+        ("direct", "Traced"),
+        ("first_bounce", "Rays"),
+        ("light_samples", "I32(1)"),
+        ("estimate", "Tables"),
+        ("antialias", "I32(8)"),
+        ("filter", "Box"),
+    ] {
         assert_eq!(attributes[name], value, "{name}");
     }
     place.run(&format!("render -o b.exr {SMALL}")).success();
@@ -116,6 +121,30 @@ fn the_power_that_is_cut_off_is_always_told() {
         assert!((0.2..0.4).contains(&share), "{answer}");
     }
     assert_eq!(attributes(&place, "a.exr")["bounces"], "I32(2)");
+}
+
+#[test]
+fn edges_are_smooth_unless_they_are_not_asked_for() {
+    let place = Workplace::new();
+    for (name, options) in
+        [("usual.exr", ""), ("hard.exr", "--antialias 1"), ("wide.exr", "--filter mitchell")]
+    {
+        place.run(&format!("render cornell-empty -o {name} {SMALL} {options}")).success();
+    }
+    let [usual, hard, wide] = ["usual.exr", "hard.exr", "wide.exr"].map(|name| place.bytes(name));
+    assert!(usual != hard && usual != wide);
+    for (options, words) in [
+        ("--antialias 0", "1 to 1024"),
+        ("--antialias 1025", "1 to 1024"),
+        ("--antialias 4 --reference 2", "--reference"),
+        ("--filter box --reference 2", "--reference"),
+        ("--filter gauss", "blackman-harris"),
+    ] {
+        let said = place.run(&format!("render cornell-empty -o none.exr {SMALL} {options}")).failure();
+        let said = String::from_utf8_lossy(&said.get_output().stderr).into_owned();
+        assert!(said.contains(words), "{options}: {said}");
+        assert!(!place.path("none.exr").exists());
+    }
 }
 
 #[test]

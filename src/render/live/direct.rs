@@ -1,11 +1,13 @@
-//! Direct light that gets better: some shadow rays a step, the mean of all so far.
+//! Direct light that gets better: some shadow rays a step, the share of all so far that saw their light.
+
+use std::f32::consts::PI;
 
 use glam::{DVec3, UVec2, Vec3};
 use rayon::prelude::*;
 
 use crate::image::Image;
 use crate::render::add;
-use crate::render::direct::{Dice, reflected};
+use crate::render::direct::{Receiver, Samples};
 use crate::render::sight::{Place, Sight};
 use crate::scene::Scene;
 
@@ -21,11 +23,54 @@ pub(super) struct ProgressiveDirect {
     places: Vec<Place>,
     straight: usize,
     lights: Vec<(u32, Vec3)>,
-    /// Radiance of each place, added up.
-    sums: Vec<DVec3>,
+    /// Of each place.
+    arrived: Vec<Arrived>,
     /// Samples of every place, and how many places have one more.
     rounds: u32,
     done: usize,
+}
+
+/// Irradiance at a place.
+#[derive(Clone, Copy, Debug, Default)]
+struct Arrived {
+    /// Of all lights, if nothing is between; nothing if only samples can tell, or before the first.
+    unblocked: Option<Vec3>,
+    /// Of samples of all lights, added up: of those that were seen, and of all.
+    of_seen: Vec3,
+    of_all: Vec3,
+}
+
+impl Arrived {
+    fn take(&mut self, scene: &Scene, place: &Place, seed: u64, number: u32, round: u32) {
+        // What reflects nothing, as most lights, needs no shadow rays.
+        if place.share == Vec3::ZERO {
+            return;
+        }
+        let receiver = Receiver::new(scene, place.position, place.normal);
+        if round == 0 {
+            let mut each = scene.lights().iter().map(|light| light.irradiance(place.position, place.normal));
+            self.unblocked =
+                each.try_fold(DVec3::ZERO, |sum, one| Some(sum + one?)).map(|sum: DVec3| sum.as_vec3());
+        }
+        for (light_number, light) in (0..).zip(scene.lights()) {
+            let uv = Samples::new(seed, number, light_number).at(round);
+            if let Some((arrives, is_seen)) = receiver.sample(scene, light, uv) {
+                self.of_all += arrives.as_vec3();
+                self.of_seen += if is_seen { arrives.as_vec3() } else { Vec3::ZERO };
+            }
+        }
+    }
+
+    /// After so many samples of each light. The ratio of samples that were seen takes away all noise but
+    /// that of shadows (E. Heitz, S. Hill, M. McGuire, "Combining analytic direct illumination and stochastic
+    /// shadows", 2018).
+    fn irradiance(&self, samples: u32) -> Vec3 {
+        match self.unblocked {
+            Some(whole) => whole * self.of_seen / self.of_all.max(Vec3::splat(f32::MIN_POSITIVE)),
+            #[expect(clippy::cast_precision_loss, reason = "a few")]
+            None => self.of_seen / samples.max(1) as f32,
+        }
+    }
 }
 
 impl ProgressiveDirect {
@@ -33,8 +78,8 @@ impl ProgressiveDirect {
         let Sight { straight: mut places, bent, lights, .. } = sight;
         let straight = places.len();
         places.extend(bent);
-        let sums = vec![DVec3::ZERO; places.len()];
-        Self { size, seed, places, straight, lights, sums, rounds: 0, done: 0 }
+        let arrived = vec![Arrived::default(); places.len()];
+        Self { size, seed, places, straight, lights, arrived, rounds: 0, done: 0 }
     }
 
     /// Samples as many places as given, all of them the first time.
@@ -42,14 +87,12 @@ impl ProgressiveDirect {
         let mut left = if self.rounds == 0 { self.places.len() } else { samples as usize };
         while left > 0 && self.rounds < ENOUGH && !self.places.is_empty() {
             let end = self.places.len().min(self.done + left);
-            // Each round has seeds of its own.
-            let seed = self.seed.wrapping_add(u64::from(self.rounds) << 40);
             let places = self.places[self.done..end].par_iter();
-            let sums = self.sums[self.done..end].par_iter_mut();
-            let done = self.done;
-            places.zip(sums).enumerate().for_each(|(index, (place, sum))| {
+            let arrived = self.arrived[self.done..end].par_iter_mut();
+            let (done, seed, round) = (self.done, self.seed, self.rounds);
+            places.zip(arrived).enumerate().for_each(|(index, (place, arrived))| {
                 let number = u32::try_from(done + index).expect("fewer than 2^32 places");
-                *sum += reflected(scene, place, 1, &mut Dice::new(seed, number));
+                arrived.take(scene, place, seed, number, round);
             });
             left -= end - self.done;
             self.done = end;
@@ -67,9 +110,10 @@ impl ProgressiveDirect {
         for &(pixel, radiance) in &self.lights {
             add(&mut image, pixel, radiance.as_dvec3());
         }
-        for (index, (place, sum)) in self.places.iter().zip(&self.sums).enumerate() {
+        for (index, (place, arrived)) in self.places.iter().zip(&self.arrived).enumerate() {
             let samples = self.rounds + u32::from(index < self.done);
-            add(&mut image, place.pixel, *sum / f64::from(samples.max(1)));
+            let radiance = place.share * arrived.irradiance(samples) / PI;
+            add(&mut image, place.pixel, radiance.as_dvec3());
         }
         for place in &self.places[..self.straight] {
             let (x, y) = (place.pixel % self.size.x, place.pixel / self.size.x);

@@ -48,7 +48,7 @@ impl ProgressiveThrough {
         self.gathered = self.photons.len();
         let wanted = Wanted::of(settings);
         let mut landed = Landed::new(&self.photons, wanted);
-        let light = seen_through(&self.view, &self.bent, Some(&mut landed), wanted, settings.kernel);
+        let (_, light) = seen_through(&self.view, &self.bent, Some(&mut landed), wanted, settings.kernel);
         self.image = light.map(|[red, green, blue, alpha]| [scale * red, scale * green, scale * blue, alpha]);
     }
 

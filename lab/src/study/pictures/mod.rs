@@ -83,11 +83,11 @@ impl PictureStudy {
             fixed: vec![1, 2, 3, 4, 6, 8, 11, 15, 20],
             kernels: vec![Kernel::Silverman],
             seeds: 5,
-            reference_seeds: 32,
+            reference_seeds: 16,
             reference_photons: 1_000_000,
             light_samples: 4,
             bias_photons: 100_000,
-            bias_seeds: 16,
+            bias_seeds: 8,
         }
     }
 
@@ -166,6 +166,8 @@ impl PictureStudy {
             estimate: way.estimate(),
             kernel,
             light_samples: self.light_samples,
+            // References are of what pixels' middles show.
+            antialias: 1,
             ..usual
         }
     }

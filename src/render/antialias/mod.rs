@@ -1,0 +1,237 @@
+//! Pixels that are areas: where something else begins beside a pixel, rays through other places of its square
+//! find what part of it each thing fills.
+//!
+//! - Inside of faces the middle of a pixel stands for all of it. At edges of surfaces, of shadows, of textures,
+//!   and of what is seen in mirrors and through glass, some rays are spread evenly over the square.
+//! - What they meet has direct light of its own, by a few shadow rays each. Light by photons is that of the
+//!   nearest pixel's middle on the same surface; in mirrors and behind glass that of the nearest place that a
+//!   pixel shows there, or where there is none near, gathered anew.
+//! - Density, radii, irradiance, normals, depth and albedo stay those of pixels' middles.
+//! - Cost: at edges, as many rays as samples, and [`RAYS`] shadow rays for each.
+
+mod edges;
+mod reconstruction;
+
+use std::f32::consts::PI;
+
+use glam::{DVec2, DVec3, IVec2, UVec2, Vec3};
+use rayon::prelude::*;
+
+use super::Layers;
+use super::direct::{DirectRays, Samples};
+use super::neighbours::Neighbours;
+use super::sight::{Place, Sight};
+use crate::image::Image;
+use crate::settings::PictureSettings;
+use crate::view::View;
+use edges::edges;
+use reconstruction::reconstruction;
+
+/// Shadow rays of a sample to each light.
+const RAYS: u32 = 4;
+/// Pixels around in which light by photons is looked for.
+const AROUND: i32 = 2;
+/// The least cosine between the normals of places with the same light.
+const AGREEMENT: f64 = 0.9;
+/// A place in a mirror or behind glass has the light of another that is at most so many pixels away, by how
+/// far apart those would be if they were seen straight.
+const NEAR: f64 = 3.0;
+
+/// Where a sample has its light by photons from.
+#[derive(Clone, Copy, Debug)]
+enum Source {
+    /// The irradiance at a pixel's middle.
+    Pixel(u32),
+    /// That of a place in a mirror or behind glass, by its index.
+    Place(usize),
+}
+
+/// A way of light by photons to the camera.
+#[derive(Clone, Copy, Debug)]
+struct Way {
+    share: Vec3,
+    source: Source,
+}
+
+/// Of a pixel's square.
+#[derive(Clone, Debug, Default)]
+struct Sample {
+    /// From its corner, in pixels.
+    at: DVec2,
+    /// Radiance of direct light.
+    direct: Vec3,
+    ways: Vec<Way>,
+}
+
+/// What the pixels at edges show.
+#[derive(Debug)]
+pub(super) struct EdgeSamples {
+    pixels: Vec<u32>,
+    /// Those of a pixel are side by side.
+    samples: Vec<Sample>,
+    each: usize,
+}
+
+impl EdgeSamples {
+    /// Looks around in the pixels at edges; `direct` is the light at the middles of all. Places that no pixel's
+    /// middle shows, or one near to it, are added to those of `sight` that are bent: without a share, so that
+    /// they only find their light.
+    pub(super) fn new(
+        rays: &DirectRays<'_>,
+        view: &View,
+        sight: &mut Sight,
+        direct: &Image<[f32; 4]>,
+        settings: &PictureSettings,
+    ) -> Self {
+        let each = settings.antialias as usize;
+        let pixels = if each > 1 { edges(sight, settings.size, direct) } else { Vec::new() };
+        let shown = Shown {
+            view,
+            straight: Neighbours::new(settings.size, &sight.straight),
+            bent: Neighbours::new(settings.size, &sight.bent),
+        };
+        let of_pixel = |&pixel: &u32| shown.look_around(rays, pixel, settings.antialias);
+        let found: Vec<(Vec<Sample>, Vec<Place>)> = pixels.par_iter().map(of_pixel).collect();
+        let mut samples = Vec::with_capacity(each * pixels.len());
+        // As places of pixels come in the order of these, so do their indices move on.
+        let mut all = Vec::new();
+        let (mut begin, mut moved) = (0, vec![0; sight.bent.len()]);
+        let mut go_on = |all: &mut Vec<Place>, until: usize| {
+            for (index, moved) in moved[begin..until].iter_mut().enumerate() {
+                *moved = all.len();
+                all.push(sight.bent[begin + index]);
+            }
+            begin = until;
+        };
+        let mut added = Vec::new();
+        for (&pixel, (of_pixel, places)) in pixels.iter().zip(found) {
+            go_on(&mut all, shown.bent.of_pixel(pixel).end);
+            added.extend((all.len()..).take(places.len()));
+            all.extend(places);
+            samples.extend(of_pixel);
+        }
+        go_on(&mut all, sight.bent.len());
+        let known = sight.bent.len();
+        let mut numbers = added.into_iter();
+        for way in samples.iter_mut().flat_map(|sample| &mut sample.ways) {
+            if let Source::Place(index) = &mut way.source {
+                *index = if *index < known {
+                    moved[*index]
+                } else {
+                    numbers.next().unwrap_or_else(|| unreachable!("each has its place"))
+                };
+            }
+        }
+        sight.bent = all;
+        Self { pixels, samples, each }
+    }
+
+    /// Whether nothing is at an edge, or nobody asked.
+    pub(super) fn is_empty(&self) -> bool {
+        self.pixels.is_empty()
+    }
+
+    /// Makes light at pixels' middles into that of their areas; `bent` is the irradiance at places in mirrors
+    /// and behind glass.
+    pub(super) fn spread_over_areas(&self, settings: &PictureSettings, layers: &mut Layers, bent: &[DVec3]) {
+        let irradiance = &layers.irradiance;
+        let light = |way: &Way| {
+            let irradiance = match way.source {
+                Source::Pixel(pixel) => Vec3::from_array(irradiance.values()[pixel as usize]),
+                Source::Place(index) => bent[index].as_vec3(),
+            };
+            way.share * irradiance / PI
+        };
+        let samples: Vec<(DVec2, [Vec3; 2])> = self
+            .samples
+            .par_iter()
+            .map(|sample| (sample.at, [sample.direct, sample.ways.iter().map(light).sum()]))
+            .collect();
+        let middles = [&layers.direct, &layers.indirect];
+        [layers.direct, layers.indirect] =
+            reconstruction(settings, middles, &self.pixels, &samples, self.each);
+        layers.beauty = Image::from_fn(layers.direct.size(), |x, y| {
+            let [direct, indirect] =
+                [&layers.direct, &layers.indirect].map(|light| Vec3::from_array(light.at(x, y)));
+            (direct + indirect).to_array()
+        });
+    }
+}
+
+/// What the middles of pixels show.
+struct Shown<'a> {
+    view: &'a View,
+    straight: Neighbours<'a>,
+    bent: Neighbours<'a>,
+}
+
+impl Shown<'_> {
+    /// The samples of a pixel, and places whose light nobody knows: their indices are past those that are
+    /// known.
+    fn look_around(&self, rays: &DirectRays<'_>, pixel: u32, count: u32) -> (Vec<Sample>, Vec<Place>) {
+        let columns = self.view.size().x;
+        let corner = UVec2::new(pixel % columns, pixel / columns).as_dvec2();
+        let spread = Samples::new(rays.seed, pixel, u32::MAX);
+        let mut unknown = Vec::new();
+        let sample = |number: u32| {
+            let at = DVec2::from_array(spread.at(number));
+            let mut seen = Sight::default();
+            seen.look(rays.scene, pixel, &self.view.ray_at(corner + at));
+            let mut direct: Vec3 = seen.lights.iter().map(|&(_, radiance)| radiance).sum();
+            for (index, place) in (0..).zip(seen.straight.iter().chain(&seen.bent)) {
+                // All samples of a pixel together are spread evenly over lights, too.
+                let key = pixel.wrapping_mul(100).wrapping_add(index);
+                direct += rays.radiance(key, place, RAYS * number..RAYS * (number + 1)).as_vec3();
+            }
+            let mut ways = Vec::new();
+            for place in &seen.straight {
+                ways.extend(self.of_straight(place).map(|source| Way { share: place.share, source }));
+            }
+            for place in &seen.bent {
+                let source = self.of_bent(place).unwrap_or_else(|| {
+                    unknown.push(Place { share: Vec3::ZERO, ..*place });
+                    usize::MAX
+                });
+                ways.push(Way { share: place.share, source: Source::Place(source) });
+            }
+            Sample { at, direct, ways }
+        };
+        let samples = (0..count).map(sample).collect();
+        (samples, unknown)
+    }
+
+    /// The pixel whose middle is nearest on the same surface; or else one that faces about the same way.
+    fn of_straight(&self, place: &Place) -> Option<Source> {
+        let near = |radius: i32| {
+            let others = square(radius).flat_map(|away| self.straight.of(place, away));
+            nearest(self.straight.places, place, others)
+        };
+        let found = (1..=AROUND).find_map(near).or_else(|| {
+            let others = square(AROUND).flat_map(|away| self.straight.at(place.pixel, away));
+            let facing = |index: usize| self.straight.places[index].normal.dot(place.normal);
+            others.max_by(|&a, &b| facing(a).total_cmp(&facing(b)))
+        });
+        found.map(|index| Source::Pixel(self.straight.places[index].pixel))
+    }
+
+    /// A place near to this one that is seen in a mirror or through glass around.
+    fn of_bent(&self, place: &Place) -> Option<usize> {
+        let others = square(AROUND).flat_map(|away| self.bent.of(place, away));
+        let near = NEAR * f64::from(self.view.pixel_side()) * place.distance;
+        nearest(self.bent.places, place, others)
+            .filter(|&index| self.bent.places[index].position.distance_squared(place.position) <= near * near)
+    }
+}
+
+/// Of some places, the nearest that faces as one does.
+fn nearest(places: &[Place], place: &Place, others: impl Iterator<Item = usize>) -> Option<usize> {
+    let squared = |index: usize| places[index].position.distance_squared(place.position);
+    others
+        .filter(|&index| places[index].normal.dot(place.normal) >= AGREEMENT)
+        .min_by(|&a, &b| squared(a).total_cmp(&squared(b)))
+}
+
+/// All pixels up to a radius around.
+fn square(radius: i32) -> impl Iterator<Item = IVec2> {
+    (-radius..=radius).flat_map(move |y| (-radius..=radius).map(move |x| IVec2::new(x, y)))
+}

@@ -1,0 +1,110 @@
+//! Rays from a place to one light, and the light that they let through.
+
+use std::ops::Range;
+
+use glam::DVec3;
+
+use super::samples::Samples;
+use crate::scene::{Light, Ray, Scene};
+
+/// A shadow ray ends this share of its length before the light, which may itself be a surface.
+const BEFORE_LIGHT: f64 = 1e-6;
+
+/// A place that light arrives at.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::render) struct Receiver {
+    pub(in crate::render) position: DVec3,
+    /// On the side that is lit.
+    pub(in crate::render) normal: DVec3,
+    /// Where rays start.
+    start: DVec3,
+}
+
+impl Receiver {
+    pub(in crate::render) fn new(scene: &Scene, position: DVec3, normal: DVec3) -> Self {
+        Self { position, normal, start: scene.start(position, normal) }
+    }
+
+    /// Irradiance from a place on a light, as if that were all of it, and whether it is seen; nothing if it
+    /// does not shine here.
+    pub(in crate::render) fn sample(
+        &self,
+        scene: &Scene,
+        light: &Light,
+        uv: [f64; 2],
+    ) -> Option<(DVec3, bool)> {
+        let place = light.place(uv);
+        let arrives = place.irradiance(self.position, self.normal);
+        let away = place.position - self.start;
+        let distance = away.length();
+        let ray = Ray { origin: self.start, direction: away / distance };
+        (arrives != DVec3::ZERO).then(|| (arrives, !scene.is_blocked(&ray, distance * (1.0 - BEFORE_LIGHT))))
+    }
+}
+
+/// What the rays of a place to a light have found.
+#[derive(Clone, Copy, Debug, Default)]
+pub(in crate::render) struct ShadowRays {
+    /// Samples that were taken: those of them that could shine on the place took a ray, and some of these saw
+    /// the light.
+    taken: u32,
+    cast: u32,
+    seen: u32,
+    /// Irradiance of samples, as if each were all of the light: of those that were seen, and of all.
+    of_seen: DVec3,
+    of_all: DVec3,
+}
+
+impl ShadowRays {
+    /// Takes the samples of some numbers, all new ones.
+    pub(in crate::render) fn take(
+        &mut self,
+        scene: &Scene,
+        light: &Light,
+        receiver: &Receiver,
+        samples: Samples,
+        numbers: Range<u32>,
+    ) {
+        self.taken += numbers.end - numbers.start;
+        for index in numbers {
+            if let Some((arrives, is_seen)) = receiver.sample(scene, light, samples.at(index)) {
+                self.cast += 1;
+                self.of_all += arrives;
+                if is_seen {
+                    self.seen += 1;
+                    self.of_seen += arrives;
+                }
+            }
+        }
+    }
+
+    /// Irradiance: the share of `unblocked` light that was seen, so that all noise is that of the share
+    /// (E. Heitz, S. Hill, M. McGuire, "Combining analytic direct illumination and stochastic shadows",
+    /// 2018). Without `unblocked`, what the samples say.
+    pub(in crate::render) fn irradiance(&self, unblocked: Option<DVec3>) -> DVec3 {
+        match unblocked {
+            // Less of the light is above the horizon than any sample met: it is taken as seen.
+            Some(whole) if self.cast == 0 => whole,
+            Some(whole) => whole * (self.of_seen.element_sum() / self.of_all.element_sum()),
+            None => self.of_seen / f64::from(self.taken.max(1)),
+        }
+    }
+
+    /// Whether some samples were seen and others not.
+    pub(in crate::render) fn is_mixed(&self) -> bool {
+        0 < self.seen && self.seen < self.cast
+    }
+
+    pub(in crate::render) fn sees_all(&self) -> bool {
+        self.seen == self.cast
+    }
+
+    /// About how far off the share is that is seen: by chance it would be the binomial distribution's root of
+    /// p (1 - p) / n; points that are spread evenly come nearer to the area of a shape by another root of the
+    /// root of n. But what is smaller than the part of a sample may be missed.
+    pub(in crate::render) fn error_of_share(&self) -> f64 {
+        let cast = f64::from(self.cast.max(1));
+        let share = f64::from(self.seen) / cast;
+        ((share * (1.0 - share)).sqrt() / cast.powf(0.75)).max(1.0 / cast)
+    }
+}

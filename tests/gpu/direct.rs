@@ -1,0 +1,90 @@
+//! Direct light of pictures by its definition: everywhere, and exactly where nothing is between.
+
+use std::f64::consts::PI;
+
+use glam::{DVec3, Vec3};
+use varikernel::render::{Layers, Renderer};
+use varikernel::scene::{Scattering, Scene};
+use varikernel::settings::{DirectLight, Kernel, KernelRadius, PictureSettings};
+use varikernel::{Gl, Image, reference};
+
+use crate::stage::settings;
+use crate::support::egl;
+
+const SIDE: u32 = 40;
+
+fn asked(direct: DirectLight, seed: u64) -> PictureSettings {
+    PictureSettings { direct, seed, light_samples: 16, ..settings(SIDE, Kernel::Box, KernelRadius::Fixed(1)) }
+}
+
+fn picture(gl: &Gl, scene: &Scene, settings: &PictureSettings) -> Layers {
+    Renderer::with_photons(gl, scene, settings, &[]).unwrap().picture(settings).unwrap().0
+}
+
+/// Radiance by the definition where a pixel shows a diffuse surface that does not shine; else nothing.
+fn defined(scene: &Scene, steps: u32) -> Image<Option<Vec3>> {
+    let view = scene.view(glam::UVec2::splat(SIDE));
+    Image::from_fn(view.size(), |x, y| {
+        let ray = view.ray(x, y);
+        let hit = scene.cast(&ray)?;
+        let Scattering::Lambert(reflectance) = scene.scattering(&hit) else { return None };
+        let facing = if hit.normal.dot(ray.direction) < 0.0 { hit.normal } else { -hit.normal };
+        let is_dark = scene.emission(&hit, ray.direction) == Vec3::ZERO;
+        let irradiance = reference::direct(scene, hit.position, facing, steps);
+        is_dark.then(|| (reflectance.as_dvec3() * irradiance / PI).as_vec3())
+    })
+}
+
+/// RMSE of green over its mean, and the largest difference over it.
+fn differences(picture: &Image<[f32; 3]>, defined: &Image<Option<Vec3>>) -> (f64, f64) {
+    let both = picture.values().iter().zip(defined.values());
+    let pairs: Vec<_> =
+        both.filter_map(|(found, known)| Some((f64::from(found[1]), f64::from(known.as_ref()?.y)))).collect();
+    let count = f64::from(u32::try_from(pairs.len()).unwrap());
+    let mean = pairs.iter().map(|(_, known)| known).sum::<f64>() / count;
+    let squares: f64 = pairs.iter().map(|(found, known)| (found - known).powi(2)).sum();
+    let largest = pairs.iter().map(|(found, known)| (found - known).abs()).fold(0.0, f64::max);
+    ((squares / count).sqrt() / mean, largest / mean)
+}
+
+#[test]
+fn a_picture_has_the_direct_light_of_the_definition() {
+    let gl = egl();
+    for (name, direct, rmse, largest) in [
+        ("cornell-boxes", DirectLight::Traced, 0.01, 0.08),
+        ("cornell-glass", DirectLight::Traced, 0.01, 0.08),
+        ("still-life", DirectLight::Traced, 0.01, 0.2),
+        ("cornell-boxes", DirectLight::ShadowMap, 0.05, 0.3),
+    ] {
+        let scene = Scene::shipped(name).unwrap();
+        let known = defined(&scene, 24);
+        let mut found = picture(&gl, &scene, &asked(direct, 1)).direct;
+        let (by, most) = differences(&found, &known);
+        assert!(by < rmse && most < largest, "{name}, {direct:?}: {by} {most}");
+        // A pixel that is brighter by half is seen.
+        let at = known.values().iter().position(|light| light.is_some_and(|light| light.y > 0.05)).unwrap();
+        let (x, y) = (u32::try_from(at).unwrap() % SIDE, u32::try_from(at).unwrap() / SIDE);
+        found.set(x, y, found.at(x, y).map(|light| 1.5 * light + 1.0));
+        assert!(differences(&found, &known).1 > largest);
+    }
+}
+
+#[test]
+fn without_anything_between_there_is_no_noise_and_no_error() {
+    let gl = egl();
+    let scene = Scene::shipped("cornell-empty").unwrap();
+    let [first, second] = [1, 2].map(|seed| picture(&gl, &scene, &asked(DirectLight::Traced, seed)).direct);
+    assert_eq!(first.values(), second.values());
+    let view = scene.view(glam::UVec2::splat(SIDE));
+    for (x, y) in [(20, 35), (5, 20), (20, 20), (34, 12)] {
+        let hit = scene.cast(&view.ray(x, y)).unwrap();
+        let Scattering::Lambert(reflectance) = scene.scattering(&hit) else { panic!("a wall") };
+        let lights = scene.lights().iter().map(|light| match &light.shape {
+            varikernel::scene::LightShape::Area(area) => area.irradiance(hit.position, hit.normal).unwrap(),
+            varikernel::scene::LightShape::Point { .. } => DVec3::ZERO,
+        });
+        let known = (reflectance.as_dvec3() * lights.sum::<DVec3>() / PI).as_vec3();
+        let found = Vec3::from_array(first.at(x, y));
+        assert!((found - known).abs().max_element() <= 1e-5 * known.max_element(), "{found} {known}");
+    }
+}
