@@ -94,7 +94,7 @@ impl Renderer {
         // What can be refused is refused before anything is traced.
         let emission = Emission::new(scene, trace)?;
         let prepared = Prepared::new(gl, scene, settings, progress)?;
-        let wanted = (!prepared.bent.is_empty()).then(|| Wanted::of(&settings.irradiance()));
+        let wanted = prepared.shows_bent().then(|| Wanted::of(&settings.irradiance()));
         let view = prepared.surfaces.view();
         let traced = Traced::new(gl, scene, view, &emission, wanted, settings.first_bounce, progress)?;
         Self::assemble(gl, prepared, traced, settings)
@@ -120,7 +120,7 @@ impl Renderer {
         let seen: Vec<_> = photons.iter().copied().filter(|photon| photon.may_be_seen(view)).collect();
         points.upload(&seen)?;
         let wanted = Wanted::of(&settings.irradiance());
-        let landed = (!prepared.bent.is_empty()).then(|| Landed::new(photons, wanted));
+        let landed = prepared.shows_bent().then(|| Landed::new(photons, wanted));
         let count = u32::try_from(photons.len()).expect("fewer than 2^32 photons");
         let traced = Traced { emitted: count, landings: count.into(), cut_off_share: 0.0, points, landed };
         Self::assemble(gl, prepared, traced, settings)
@@ -159,13 +159,10 @@ impl Renderer {
         let asked = settings.irradiance();
         self.pipeline.change(asked)?;
         self.count_unless_known()?;
-        let (irradiance_of_bent, seen_through) = seen_through(
-            self.surfaces.view(),
-            &self.bent,
-            self.traced.landed.as_mut(),
-            Wanted::of(&asked),
-            settings.kernel,
-        );
+        let (view, landed, wanted) = (self.surfaces.view(), &mut self.traced.landed, Wanted::of(&asked));
+        let mut through = |places| seen_through(view, places, landed.as_mut(), wanted, settings.kernel);
+        let (of_bent, seen_through) = through(&self.bent);
+        let (of_edges, _) = through(self.edges.places());
         self.light.seen_through = seen_through;
         self.pipeline.clear_light();
         let irradiance = self.pipeline.spread(&self.surfaces, &self.traced.points)?;
@@ -195,7 +192,7 @@ impl Renderer {
             albedo: self.surfaces.read_albedo()?.map(rgb),
         };
         if !self.edges.is_empty() || settings.filter != PixelFilter::Box {
-            self.edges.spread_over_areas(settings, &mut layers, &irradiance_of_bent);
+            self.edges.spread_over_areas(settings, &mut layers, [&of_bent, &of_edges]);
         }
         let account = self.account_of(&position, &normal, &irradiance, &layers.limited)?;
         Ok((layers, account))

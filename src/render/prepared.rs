@@ -24,6 +24,11 @@ pub(super) struct Prepared {
 }
 
 impl Prepared {
+    /// Whether anything is seen in mirrors or through glass.
+    pub(super) fn shows_bent(&self) -> bool {
+        !self.bent.is_empty() || !self.edges.places().is_empty()
+    }
+
     pub(super) fn new(
         gl: &Gl,
         scene: &Scene,
@@ -33,7 +38,7 @@ impl Prepared {
         let view = scene.view(settings.size);
         let mut surfaces = SurfaceStage::new(gl)?.draw(scene, view)?;
         progress(Progress { stage: "direct light", done: 0.0 });
-        let mut sight = Sight::new(scene, &view);
+        let sight = Sight::new(scene, &view);
         sight.paint(&mut surfaces)?;
         #[expect(clippy::cast_precision_loss, reason = "a share")]
         let straight = sight.straight.len() as f64 / (sight.straight.len() + sight.bent.len()).max(1) as f64;
@@ -66,7 +71,7 @@ impl Prepared {
         }
         progress(Progress { stage: "edges", done: 0.0 });
         let rays = DirectRays { seed: settings.seed.wrapping_add(1 << 33), ..rays };
-        let edges = EdgeSamples::new(&rays, &view, &mut sight, &direct, settings);
+        let edges = EdgeSamples::new(&rays, &view, &sight, &direct, settings);
         let seen_through = Image::filled(settings.size, [0.0; 4]);
         Ok(Self { surfaces, traced: TracedLight { direct, seen_through }, bent: sight.bent, edges })
     }

@@ -69,8 +69,8 @@ pub struct LightSample {
 const MEAN_STEPS: [f64; 2] = [8.0, 256.0];
 /// Samples of all triangles of a light, more or less.
 const MEAN_SAMPLES: f64 = 4e6;
-/// With more triangles than this it is cheaper to sample a light than to add them all up.
-const MOST_ADDED_UP: usize = 64;
+/// With more triangles than this it is cheaper to sample a light, by some 64 rays, than to add them all up.
+const MOST_ADDED_UP: usize = 512;
 /// Each triangle gets places, and the light power, as if its mean radiance were at least this share of that
 /// of the whole image: a bright texel that no sample of the mean met is found all the same.
 const LEAST_RADIANCE: f64 = 0.05;

@@ -22,6 +22,11 @@ const BOX_MARGIN: f32 = 4e-6;
 /// What reaches this many times as far from the middle as half of all primitives do is far.
 const FAR: f32 = 1000.0;
 
+/// Meeting a primitive in f64 takes about as long as meeting two boxes in f32: 20 % less time for photons in the
+/// Cornell boxes than with the three steps of `medium_build`.
+const PARAMETERS: BvhBuildParams =
+    BvhBuildParams { max_prims_per_leaf: 4, collapse_traversal_cost: 1.0, ..BvhBuildParams::medium_build() };
+
 /// The primitives of a part of the scene.
 #[derive(Clone)]
 pub(super) struct Tree {
@@ -61,7 +66,7 @@ impl Tree {
         };
         let boxes: Vec<_> = members.iter().copied().zip(own()).map(wide).collect();
         Self {
-            boxes: build_bvh2(&boxes, BvhBuildParams::medium_build(), &mut Duration::default()),
+            boxes: build_bvh2(&boxes, PARAMETERS, &mut Duration::default()),
             members,
             centre: (min.as_dvec3() + max.as_dvec3()) / 2.0,
             extent: (max.as_dvec3() - min.as_dvec3()).length() / 2.0,

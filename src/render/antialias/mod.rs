@@ -42,8 +42,10 @@ const NEAR: f64 = 3.0;
 enum Source {
     /// The irradiance at a pixel's middle.
     Pixel(u32),
-    /// That of a place in a mirror or behind glass, by its index.
-    Place(usize),
+    /// That of a place in a mirror or behind glass that a pixel's middle shows, by its index.
+    Bent(usize),
+    /// That of a place of [`EdgeSamples`]' own.
+    Own(usize),
 }
 
 /// A way of light by photons to the camera.
@@ -70,60 +72,44 @@ pub(super) struct EdgeSamples {
     /// Those of a pixel are side by side.
     samples: Vec<Sample>,
     each: usize,
+    places: Vec<Place>,
 }
 
 impl EdgeSamples {
-    /// Looks around in the pixels at edges; `direct` is the light at the middles of all. Places that no pixel's
-    /// middle shows, or one near to it, are added to those of `sight` that are bent: without a share, so that
-    /// they only find their light.
+    /// Looks around in the pixels at edges; `direct` is the light at the middles of all.
     pub(super) fn new(
         rays: &DirectRays<'_>,
         view: &View,
-        sight: &mut Sight,
+        sight: &Sight,
         direct: &Image<[f32; 4]>,
         settings: &PictureSettings,
     ) -> Self {
-        let each = settings.antialias as usize;
+        let each = settings.antialias;
         let pixels = if each > 1 { edges(sight, settings.size, direct) } else { Vec::new() };
         let shown = Shown {
             view,
             straight: Neighbours::new(settings.size, &sight.straight),
             bent: Neighbours::new(settings.size, &sight.bent),
         };
-        let of_pixel = |&pixel: &u32| shown.look_around(rays, pixel, settings.antialias);
+        let of_pixel = |&pixel: &u32| shown.look_around(rays, pixel, each);
         let found: Vec<(Vec<Sample>, Vec<Place>)> = pixels.par_iter().map(of_pixel).collect();
-        let mut samples = Vec::with_capacity(each * pixels.len());
-        // As places of pixels come in the order of these, so do their indices move on.
-        let mut all = Vec::new();
-        let (mut begin, mut moved) = (0, vec![0; sight.bent.len()]);
-        let mut go_on = |all: &mut Vec<Place>, until: usize| {
-            for (index, moved) in moved[begin..until].iter_mut().enumerate() {
-                *moved = all.len();
-                all.push(sight.bent[begin + index]);
+        let (mut samples, mut places) = (Vec::new(), Vec::new());
+        for (mut of_pixel, own) in found {
+            for way in of_pixel.iter_mut().flat_map(|sample| &mut sample.ways) {
+                if let Source::Own(index) = &mut way.source {
+                    *index += places.len();
+                }
             }
-            begin = until;
-        };
-        let mut added = Vec::new();
-        for (&pixel, (of_pixel, places)) in pixels.iter().zip(found) {
-            go_on(&mut all, shown.bent.of_pixel(pixel).end);
-            added.extend((all.len()..).take(places.len()));
-            all.extend(places);
             samples.extend(of_pixel);
+            places.extend(own);
         }
-        go_on(&mut all, sight.bent.len());
-        let known = sight.bent.len();
-        let mut numbers = added.into_iter();
-        for way in samples.iter_mut().flat_map(|sample| &mut sample.ways) {
-            if let Source::Place(index) = &mut way.source {
-                *index = if *index < known {
-                    moved[*index]
-                } else {
-                    numbers.next().unwrap_or_else(|| unreachable!("each has its place"))
-                };
-            }
-        }
-        sight.bent = all;
-        Self { pixels, samples, each }
+        Self { pixels, samples, each: each as usize, places }
+    }
+
+    /// Places in mirrors and behind glass that no pixel's middle shows, nor one near to it; in the order of
+    /// their pixels.
+    pub(super) fn places(&self) -> &[Place] {
+        &self.places
     }
 
     /// Whether nothing is at an edge, or nobody asked.
@@ -131,14 +117,20 @@ impl EdgeSamples {
         self.pixels.is_empty()
     }
 
-    /// Makes light at pixels' middles into that of their areas; `bent` is the irradiance at places in mirrors
-    /// and behind glass.
-    pub(super) fn spread_over_areas(&self, settings: &PictureSettings, layers: &mut Layers, bent: &[DVec3]) {
+    /// Makes light at pixels' middles into that of their areas; `bent` and `own` are the irradiance at places in
+    /// mirrors and behind glass that middles show, and at [`places`](Self::places).
+    pub(super) fn spread_over_areas(
+        &self,
+        settings: &PictureSettings,
+        layers: &mut Layers,
+        [bent, own]: [&[DVec3]; 2],
+    ) {
         let irradiance = &layers.irradiance;
         let light = |way: &Way| {
             let irradiance = match way.source {
                 Source::Pixel(pixel) => Vec3::from_array(irradiance.values()[pixel as usize]),
-                Source::Place(index) => bent[index].as_vec3(),
+                Source::Bent(index) => bent[index].as_vec3(),
+                Source::Own(index) => own[index].as_vec3(),
             };
             way.share * irradiance / PI
         };
@@ -166,13 +158,12 @@ struct Shown<'a> {
 }
 
 impl Shown<'_> {
-    /// The samples of a pixel, and places whose light nobody knows: their indices are past those that are
-    /// known.
+    /// The samples of a pixel, and places of their own.
     fn look_around(&self, rays: &DirectRays<'_>, pixel: u32, count: u32) -> (Vec<Sample>, Vec<Place>) {
         let columns = self.view.size().x;
         let corner = UVec2::new(pixel % columns, pixel / columns).as_dvec2();
         let spread = Samples::new(rays.seed, pixel, u32::MAX);
-        let mut unknown = Vec::new();
+        let mut own = Vec::new();
         let sample = |number: u32| {
             let at = DVec2::from_array(spread.at(number));
             let mut seen = Sight::default();
@@ -188,16 +179,16 @@ impl Shown<'_> {
                 ways.extend(self.of_straight(place).map(|source| Way { share: place.share, source }));
             }
             for place in &seen.bent {
-                let source = self.of_bent(place).unwrap_or_else(|| {
-                    unknown.push(Place { share: Vec3::ZERO, ..*place });
-                    usize::MAX
-                });
-                ways.push(Way { share: place.share, source: Source::Place(source) });
+                let source = self.of_bent(place).map_or(Source::Own(own.len()), Source::Bent);
+                if matches!(source, Source::Own(_)) {
+                    own.push(*place);
+                }
+                ways.push(Way { share: place.share, source });
             }
             Sample { at, direct, ways }
         };
         let samples = (0..count).map(sample).collect();
-        (samples, unknown)
+        (samples, own)
     }
 
     /// The pixel whose middle is nearest on the same surface; or else one that faces about the same way.

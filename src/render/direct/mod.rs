@@ -160,7 +160,7 @@ impl DirectRays<'_> {
             let mut rays = self.rays(index, number, light, &receiver, first);
             if is_open {
                 for doubling in 1..=MOST_DOUBLINGS {
-                    let most = unblocked.unwrap_or_else(|| 2.0 * rays.irradiance(None));
+                    let most = unblocked.unwrap_or_else(|| rays.irradiance(None));
                     if rays.error_of_share() * mean(most) <= enough {
                         break;
                     }

@@ -131,6 +131,9 @@ fn along_photons(
 
 /// A way with one number of photons, if it was tried.
 fn point(sweep: &Sweep<'_>, metric: Metric, photons: u32, way: Way) -> Option<CurvePoint> {
+    if !sweep.is_whole(way) {
+        return None;
+    }
     let seconds: Vec<f64> = sweep.of(way).iter().map(|row| 1e3 * row.seconds()).collect();
     let seeds = sweep.errors(way, metric);
     Some(CurvePoint {

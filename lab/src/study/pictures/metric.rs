@@ -102,18 +102,32 @@ impl<'a> Sweep<'a> {
         ways
     }
 
+    /// Whether a way has rows of all seeds that any has: the first seed alone draws what others needn't.
+    pub(super) fn is_whole(&self, way: Way) -> bool {
+        let most = self.rows.iter().map(|row| row.seed).max();
+        most.is_some_and(|most| self.of(way).iter().any(|row| row.seed == most))
+    }
+
+    /// A way and those beside it that were tried.
+    pub(super) fn around(&self, way: Way) -> Vec<Way> {
+        let ways = self.ways(way.family());
+        let Some(place) = ways.iter().position(|&tried| tried == way) else { return Vec::new() };
+        ways[place.saturating_sub(1)..ways.len().min(place + 2)].to_vec()
+    }
+
     /// The least and the widest way of a family; nothing if there is none.
     pub(super) fn ends(&self, family: Family) -> Option<(Way, Way)> {
         let ways = self.ways(family);
         Some((*ways.first()?, *ways.last()?))
     }
 
-    /// The way of a family with the least mean error over the seeds; nothing if there is none.
+    /// The way of a family with the least mean error over all seeds; nothing if there is none.
     pub(super) fn best(&self, metric: Metric, family: Family) -> Option<Chosen> {
         let ways = self.ways(family);
         let errors = ways
             .iter()
             .enumerate()
+            .filter(|(_, way)| self.is_whole(**way))
             .filter_map(|(place, &way)| Some((place, Confidence::of(&self.errors(way, metric))?)));
         let (place, error) = errors.min_by(|(_, a), (_, b)| a.mean.total_cmp(&b.mean))?;
         let is_swept = matches!(family, Family::Variable | Family::Fixed);

@@ -37,6 +37,9 @@ use varikernel::error::{Error, Result};
 use varikernel::scene::Scene;
 use varikernel::settings::{Kernel, MAX_PICTURE_RADIUS, PictureSettings};
 
+/// So many photons of all seeds together are enough; two seeds are the least.
+const PHOTONS_OF_SEEDS: u32 = 2_000_000;
+
 /// What is drawn and compared.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PictureStudy {
@@ -56,7 +59,7 @@ pub struct PictureStudy {
     pub fixed: Vec<u32>,
     /// Falloffs; variable and fixed radii are compared for each.
     pub kernels: Vec<Kernel>,
-    /// Seeds of pictures, from 1 on: independent samples.
+    /// Seeds of pictures, from 1 on: independent samples; fewer where there are many photons.
     pub seeds: u32,
     /// Seeds that the reference is the mean of, none of them a picture's; an even number, 4 at least.
     pub reference_seeds: u32,
@@ -106,6 +109,13 @@ impl PictureStudy {
             bias_seeds: 3,
             ..Self::usual()
         }
+    }
+
+    /// Seeds of pictures with so many photons: the more there are, the less seeds differ, and the longer each
+    /// takes.
+    #[must_use]
+    pub fn seeds_of(&self, photons: u32) -> u32 {
+        self.seeds.min((PHOTONS_OF_SEEDS / photons.max(1)).max(2))
     }
 
     /// Checks every list and range.

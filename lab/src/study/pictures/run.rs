@@ -72,33 +72,40 @@ impl<'s> Run<'s> {
     fn tell(&mut self, stage: &'static str, more: f64, observe: Observe<'_>) -> Result<()> {
         let study = self.study;
         let reference = f64::from(study.reference_seeds) * f64::from(study.reference_photons);
-        let pictures = study.photons.iter().map(|&photons| DRAWN * f64::from(photons)).sum::<f64>();
+        let of_photons = |&photons: &u32| f64::from(study.seeds_of(photons)) * DRAWN * f64::from(photons);
+        let pictures = study.photons.iter().map(of_photons).sum::<f64>();
         let bias = f64::from(study.bias_seeds) * DRAWN * f64::from(study.bias_photons) / f64::from(ROUNDS);
         #[expect(clippy::cast_precision_loss, reason = "a few scenes")]
-        let all = study.scenes.len() as f64 * (reference + f64::from(study.seeds) * pictures + bias);
+        let all = study.scenes.len() as f64 * (reference + pictures + bias);
         self.done += more;
         observe(&self.rows, Progress { stage, done: (self.done / all).min(1.0) })
     }
 
     /// All pictures of one scene and number of photons: first the smallest widths, then larger ones while
-    /// they get better.
+    /// they get better. The first seed tells where the best widths are, the others draw those and the ones
+    /// beside them.
     fn sweep(&mut self, place: &Place<'_>, observe: Observe<'_>) -> Result<()> {
         let first = self.rows.len();
         let work = DRAWN * f64::from(place.photons);
-        let mut studios: Vec<Option<Studio<'s>>> = (0..self.study.seeds).map(|_| None).collect();
-        let mut ways = self.next_ways(first);
+        let all_seeds = self.study.seeds_of(place.photons);
+        let mut studios: Vec<Option<Studio<'s>>> = (0..all_seeds).map(|_| None).collect();
         let mut rounds = 0;
-        while !ways.is_empty() {
-            let share = if rounds < ROUNDS { work / f64::from(ROUNDS) } else { 0.0 };
-            for (seed, studio) in (1..).zip(&mut studios) {
-                self.draw(place, seed, &ways, studio)?;
-                self.tell("pictures", share, observe)?;
+        for seeds in [1, all_seeds] {
+            loop {
+                let ways = self.next_ways(first, seeds);
+                if ways.is_empty() {
+                    break;
+                }
+                let share = if rounds < ROUNDS { work / f64::from(ROUNDS) } else { 0.0 };
+                for (seed, studio) in (1..=u64::from(seeds)).zip(&mut studios) {
+                    self.draw(place, first, seed, &ways, studio)?;
+                    self.tell("pictures", share, observe)?;
+                }
+                rounds += 1;
             }
-            rounds += 1;
-            ways = self.next_ways(first);
         }
         let rest = f64::from(ROUNDS.saturating_sub(rounds)) / f64::from(ROUNDS);
-        self.tell("pictures", rest * work * f64::from(self.study.seeds), observe)?;
+        self.tell("pictures", rest * work * f64::from(all_seeds), observe)?;
         let order = |row: &PictureRow| {
             let kernel = self.study.kernels.iter().position(|&kernel| kernel == row.kernel);
             (row.seed, kernel, row.way)
@@ -107,26 +114,37 @@ impl<'s> Run<'s> {
         Ok(())
     }
 
-    /// Ways to be tried next: the first ones of the study, then those beside the best so far, by any metric
-    /// and kernel, until a smaller and a larger one than each best was tried.
-    fn next_ways(&self, first: usize) -> Vec<Way> {
+    /// Ways that some of the seeds have not drawn and are to draw next. With none drawn, the first ones of the
+    /// study; then those that have no rival and the best so far, by any metric and kernel, with the ones
+    /// beside each.
+    fn next_ways(&self, first: usize, seeds: u32) -> Vec<Way> {
         let study = self.study;
         let rows = &self.rows[first..];
+        let min_photons = PictureSettings::default().min_photons;
+        let always = [Way::Variable { min_photons }, Way::Gather { min_photons }, Way::Tables];
         if rows.is_empty() {
             let fixed = study.fixed.iter().take(2).map(|&radius| Way::Fixed { radius });
             let variable = study.min_photons.iter().map(|&min_photons| Way::Variable { min_photons });
-            let min_photons = PictureSettings::default().min_photons;
-            return variable.chain(fixed).chain([Way::Gather { min_photons }, Way::Tables]).collect();
+            return variable.chain(fixed).chain(always.into_iter().skip(1)).collect();
         }
-        let mut wanted = Vec::new();
+        let count =
+            |way: Way, kernel| rows.iter().filter(|row| (row.way, row.kernel) == (way, kernel)).count();
+        let is_whole = |way: Way| study.kernels.iter().all(|&kernel| count(way, kernel) >= seeds as usize);
+        let mut wanted: Vec<Way> = always
+            .into_iter()
+            .filter(|&way| study.kernels.iter().any(|&kernel| count(way, kernel) > 0))
+            .collect();
         for &kernel in &study.kernels {
             let sweep = Sweep::new(rows.iter().filter(|row| row.kernel == kernel));
             for metric in Metric::ALL {
                 for family in [Family::Variable, Family::Fixed] {
-                    wanted.extend(sweep.best(metric, family).and_then(|best| self.beside(&sweep, best.way)));
+                    let Some(best) = sweep.best(metric, family) else { continue };
+                    wanted.extend(self.beside(&sweep, best.way));
+                    wanted.extend(sweep.around(best.way));
                 }
             }
         }
+        wanted.retain(|&way| !is_whole(way));
         wanted.sort_unstable();
         wanted.dedup();
         wanted
@@ -158,6 +176,7 @@ impl<'s> Run<'s> {
     fn draw(
         &mut self,
         place: &Place<'_>,
+        first: usize,
         seed: u64,
         ways: &[Way],
         studio: &mut Option<Studio<'s>>,
@@ -169,6 +188,9 @@ impl<'s> Run<'s> {
                     (row.scene.as_str(), row.photons, row.seed, row.kernel, row.way)
                         == (place.name, place.photons, seed, kernel, way)
                 };
+                if self.rows[first..].iter().any(is_it) {
+                    continue;
+                }
                 match self.earlier.iter().position(is_it) {
                     Some(index) => self.rows.push(self.earlier.swap_remove(index)),
                     None => missing.push((way, kernel)),
