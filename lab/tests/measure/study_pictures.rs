@@ -275,7 +275,7 @@ fn a_radius_that_is_too_large_loses() {
             rows.map(|row| one.metric.of(row)).collect::<Vec<_>>()
         };
         let (of_best, of_planted) = (errors(best), errors(40));
-        assert!(close((of_best[0] + of_best[1]) / 2.0, one.fixed.error.mean), "{one:?}");
+        assert!(close(of_best[0].midpoint(of_best[1]), one.fixed.error.mean), "{one:?}");
         // The second seed goes no further than beside the best.
         assert!(of_planted[0] > of_best[0] && of_planted.len() <= of_best.len(), "{one:?}");
     }
