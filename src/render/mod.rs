@@ -192,7 +192,7 @@ impl Renderer {
             albedo: self.surfaces.read_albedo()?.map(rgb),
         };
         if !self.edges.is_empty() || settings.filter != PixelFilter::Box {
-            self.edges.spread_over_areas(settings, &mut layers, [&of_bent, &of_edges]);
+            self.edges.spread_over_areas(settings.filter, &mut layers, [&of_bent, &of_edges]);
         }
         let account = self.account_of(&position, &normal, &irradiance, &layers.limited)?;
         Ok((layers, account))

@@ -18,9 +18,12 @@ pub(super) struct Neighbours<'a> {
 impl<'a> Neighbours<'a> {
     /// Of a picture of `size`; places are in the order of their pixels.
     pub(super) fn new(size: UVec2, places: &'a [Place]) -> Self {
-        let begins = (0..=size.element_product())
-            .map(|pixel| places.partition_point(|place| place.pixel < pixel))
-            .collect();
+        let mut begins = Vec::with_capacity(size.element_product() as usize + 1);
+        let mut begin = 0;
+        for pixel in 0..=size.element_product() {
+            begin += places[begin..].iter().take_while(|place| place.pixel < pixel).count();
+            begins.push(begin);
+        }
         Self { size, places, begins }
     }
 

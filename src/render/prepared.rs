@@ -38,7 +38,7 @@ impl Prepared {
         let view = scene.view(settings.size);
         let mut surfaces = SurfaceStage::new(gl)?.draw(scene, view)?;
         progress(Progress { stage: "direct light", done: 0.0 });
-        let sight = Sight::new(scene, &view);
+        let sight = Sight::new(scene, &view, settings.antialias > 1);
         sight.paint(&mut surfaces)?;
         #[expect(clippy::cast_precision_loss, reason = "a share")]
         let straight = sight.straight.len() as f64 / (sight.straight.len() + sight.bent.len()).max(1) as f64;

@@ -70,8 +70,8 @@ impl ShadowMaps {
         })
     }
 
-    /// Radiance of direct light that each place sends to the camera that is seen straight, from some places on
-    /// each light. `show` is told the done share.
+    /// Radiance of direct light that each place, all seen straight, sends to the camera, from some places on each
+    /// light. `show` is told the done share.
     pub(crate) fn reflected(
         &mut self,
         scene: &Scene,
@@ -111,8 +111,8 @@ impl ShadowMaps {
         Ok(all)
     }
 
-    /// The sum over `places` of irradiance as if each were all of its light, at what each pixel shows, linear RGB, and how many places are seen from
-    /// there; 0 on mirrors and glass and where nothing is seen. `show` is told the done share.
+    /// The sum over `places` of irradiance as if each were all of its light, at what each pixel shows, linear
+    /// RGB, and how many places are seen from there; 0 on mirrors and glass and where nothing is seen. `show` is told the done share.
     fn irradiance(
         &mut self,
         surfaces: &SurfaceMaps,

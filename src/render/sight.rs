@@ -40,9 +40,9 @@ pub(super) struct Place {
 pub(super) struct First {
     /// Number of the surface: its index plus 1; 0 for nothing.
     pub(super) surface: u32,
-    pub(super) position: Vec3,
+    pub(super) position: DVec3,
     /// On the side that is seen.
-    pub(super) normal: Vec3,
+    pub(super) normal: DVec3,
     /// Of a diffuse surface.
     pub(super) reflectance: Vec3,
 }
@@ -54,7 +54,7 @@ pub(super) struct Sight {
     pub(super) straight: Vec<Place>,
     /// Those that are seen in mirrors and through glass.
     pub(super) bent: Vec<Place>,
-    /// Of each ray.
+    /// Of each pixel, or nothing.
     pub(super) firsts: Vec<First>,
     /// Pixels, and the radiance of what shines by itself in them.
     pub(super) lights: Vec<(u32, Vec3)>,
@@ -64,14 +64,17 @@ pub(super) struct Sight {
 }
 
 impl Sight {
-    /// Casts a ray through the middle of each pixel.
-    pub(super) fn new(scene: &Scene, view: &View) -> Self {
+    /// Casts a ray through the middle of each pixel; with what each meets `first`, if that is asked for.
+    pub(super) fn new(scene: &Scene, view: &View, first: bool) -> Self {
         let UVec2 { x: width, y: height } = view.size();
         let rows: Vec<Self> = (0..height)
             .into_par_iter()
             .map(|y| {
                 let mut sight = Self::default();
                 for x in 0..width {
+                    if first {
+                        sight.firsts.push(First::default());
+                    }
                     sight.look(scene, y * width + x, &view.ray(x, y));
                 }
                 sight
@@ -103,7 +106,6 @@ impl Sight {
 
     /// Adds what a ray from the camera sees.
     pub(super) fn look(&mut self, scene: &Scene, pixel: u32, ray: &Ray) {
-        self.firsts.push(First::default());
         self.follow(scene, pixel, ray, Vec3::ONE, 0.0, 0);
     }
 
@@ -121,8 +123,8 @@ impl Sight {
         {
             *first = First {
                 surface: hit.surface + 1,
-                position: hit.position.as_vec3(),
-                normal: facing.as_vec3(),
+                position: hit.position,
+                normal: facing,
                 reflectance: Vec3::ZERO,
             };
         }

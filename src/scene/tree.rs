@@ -92,8 +92,8 @@ impl Tree {
 
     /// Whether anything is met before `limit`.
     pub(super) fn blocks(&self, ray: &Ray, limit: f64, meet: impl Fn(&Ray, u32) -> Option<f64>) -> bool {
-        // The first that is found ends the search.
-        self.search(ray, limit, meet, |_| 0.0).is_some()
+        // The first that is found ends the search: no box is nearer than that.
+        self.search(ray, limit, meet, |_| f32::NEG_INFINITY).is_some()
     }
 
     /// The last primitive that was found before `limit` and all found earlier; `rest` tells how far to look

@@ -24,7 +24,7 @@ pub use kernel::{Kernel, KernelRadius, MAX_PICTURE_RADIUS};
 pub use laboratory::{Exactness, Laboratory, Matching, SatBuild, SatSamples, Split, Variation};
 pub use method::{Method, Storage};
 #[cfg(feature = "scene")]
-pub use picture::{DirectLight, FirstBounce, MOST_ANTIALIAS, PictureSettings};
+pub use picture::{DirectLight, FirstBounce, MOST_ANTIALIAS, MOST_LIGHT_SAMPLES, PictureSettings};
 pub use pixel_filter::PixelFilter;
 pub(crate) use question::{BRACKET_TILE_SIDE, EVEN_STEPS, MOST_EVEN_STEPS, even_step};
 pub use question::{Edges, MAX_EVEN_RADIUS, MAX_RADIUS_LIMIT, Order, Planning, Rule, Search};

@@ -5,6 +5,9 @@ use glam::UVec2;
 use super::{Estimate, IrradianceSettings, Kernel, KernelRadius, PixelFilter, Search, Settings};
 use crate::error::{Error, Result};
 
+/// As many shadow rays as a penumbra may begin with.
+pub const MOST_LIGHT_SAMPLES: u32 = 4096;
+
 /// As many samples as a pixel at an edge may have.
 pub const MOST_ANTIALIAS: u32 = 1024;
 
@@ -52,8 +55,8 @@ pub struct PictureSettings {
     pub estimate: Estimate,
     /// Shadow rays or shadow maps.
     pub direct: DirectLight,
-    /// Shadow rays of a pixel in penumbra to each area light at first, of which up to 16 times as many follow
-    /// where noise asks for them; or cubes of shadow maps. A power of 4 is best, at least 1.
+    /// Shadow rays of a pixel in penumbra to each area light at first, up to 16 times as many in all where noise
+    /// asks for them; or cubes of shadow maps. From 1 to [`MOST_LIGHT_SAMPLES`]; a power of 4 is best.
     pub light_samples: u32,
     /// Samples of a pixel at an edge, spread over its area, from 1 to [`MOST_ANTIALIAS`]; 1 shows what pixels'
     /// middles do.
@@ -118,8 +121,9 @@ impl PictureSettings {
         let irradiance = self.irradiance();
         IrradianceSettings { radius: KernelRadius::Variable, ..irradiance }.validate()?;
         irradiance.validate()?;
-        if self.light_samples == 0 {
-            return refuse("light_samples", "0".to_owned(), "a light takes at least 1 shadow ray");
+        if !(1..=MOST_LIGHT_SAMPLES).contains(&self.light_samples) {
+            let reason = format!("a penumbra begins with 1 to {MOST_LIGHT_SAMPLES} shadow rays");
+            return refuse("light_samples", self.light_samples.to_string(), &reason);
         }
         if !(1..=MOST_ANTIALIAS).contains(&self.antialias) {
             let reason = format!("a pixel at an edge takes 1 to {MOST_ANTIALIAS} samples");

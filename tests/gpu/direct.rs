@@ -8,7 +8,7 @@ use varikernel::scene::{Scattering, Scene};
 use varikernel::settings::{DirectLight, Kernel, KernelRadius, PictureSettings};
 use varikernel::{Gl, Image, reference};
 
-use crate::stage::settings;
+use crate::stage::{scene, settings};
 use crate::support::egl;
 
 const SIDE: u32 = 40;
@@ -87,4 +87,77 @@ fn without_anything_between_there_is_no_noise_and_no_error() {
         let found = Vec3::from_array(first.at(x, y));
         assert!((found - known).abs().max_element() <= 1e-5 * known.max_element(), "{found} {known}");
     }
+}
+
+/// A floor below a lamp of `material`, and a board between them.
+fn below(material: &str, lamps: &str) -> Scene {
+    scene(&format!(
+        "
+[camera]
+position = [0, 3, 0]
+direction = [0, -1, 0]
+up = [0, 0, -1]
+vertical_fov_degrees = 60
+[materials]
+grey = {{ lambert = [0.5, 0.5, 0.5] }}
+glow = {{ lambert = [0, 0, 0], emission = [3, 1.5, 1] }}
+[surfaces.floor]
+material = \"grey\"
+quads = [[[-5, 0, 5], [5, 0, 5], [5, 0, -5], [-5, 0, -5]]]
+[surfaces.board]
+material = \"grey\"
+quads = [[[-0.5, 1.5, -0.5], [0.5, 1.5, -0.5], [0.5, 1.5, 0.5], [-0.5, 1.5, 0.5]]]
+[surfaces.lamp]
+material = \"{material}\"
+quads = [{lamps}]
+"
+    ))
+}
+
+/// A lamp of many small squares, some 8 above the floor.
+fn squares(columns: u32) -> String {
+    let corner = |index: u32| f64::from(index) * 2.0 / f64::from(columns) - 1.0;
+    let one = |(i, j): (u32, u32)| {
+        let (x, z, next_x, next_z) = (corner(i), corner(j), corner(i + 1), corner(j + 1));
+        format!("[[{x}, 8, {z}], [{next_x}, 8, {z}], [{next_x}, 8, {next_z}], [{x}, 8, {next_z}]]")
+    };
+    let all = (0..columns).flat_map(|i| (0..columns).map(move |j| (i, j))).map(one);
+    all.collect::<Vec<_>>().join(", ")
+}
+
+/// 648 triangles are more than are added up, so that samples tell how bright the lamp is.
+#[test]
+fn a_lamp_of_many_triangles_is_that_of_few() {
+    let gl = egl();
+    let few = below("glow", &squares(1));
+    let known = defined(&few, 24);
+    for (columns, rmse) in [(1, 0.01), (18, 0.03)] {
+        let found = picture(&gl, &below("glow", &squares(columns)), &asked(DirectLight::Traced, 1)).direct;
+        let (by, most) = differences(&found, &known);
+        assert!(by < rmse && most < 0.2, "{columns}: {by} {most}");
+    }
+}
+
+/// A picture of one pixel has no neighbours that tell of a penumbra: the mean over seeds is right all the same.
+#[test]
+fn one_pixel_in_penumbra_is_right_in_the_mean() {
+    let gl = egl();
+    let mut scene = below("glow", &squares(1));
+    // Beside the board's shadow.
+    scene.camera.position.x = 0.55;
+    scene.camera.position.y = 1.0;
+    let usual = asked(DirectLight::Traced, 1);
+    let size = glam::UVec2::ONE;
+    let view = scene.view(size);
+    let hit = scene.cast(&view.ray(0, 0)).unwrap();
+    let irradiance = reference::direct(&scene, hit.position, hit.normal, 200);
+    let known = 0.5 * irradiance.y / PI;
+    let unblocked = reference::direct(&below("glow", &squares(1)), DVec3::new(4.0, 0.0, 4.0), DVec3::Y, 20);
+    assert!(irradiance.y < 0.95 * unblocked.y * 4.0 && irradiance.y > 0.0);
+    let of_seed = |seed| {
+        let settings = PictureSettings { size, seed, ..usual };
+        f64::from(picture(&gl, &scene, &settings).direct.at(0, 0)[1])
+    };
+    let mean = (1..=24).map(of_seed).sum::<f64>() / 24.0;
+    assert!((mean / known - 1.0).abs() < 0.02, "{mean} {known}");
 }

@@ -112,6 +112,7 @@ fn settings_out_of_range_are_refused_by_name() {
         (PictureSettings { max_radius: 97, ..usual }, "max_radius"),
         (PictureSettings { radius: KernelRadius::Fixed(0), ..usual }, "radius"),
         (PictureSettings { light_samples: 0, ..usual }, "light_samples"),
+        (PictureSettings { light_samples: 4097, ..usual }, "light_samples"),
         (PictureSettings { antialias: 0, ..usual }, "antialias"),
         (PictureSettings { antialias: 1025, ..usual }, "antialias"),
         (PictureSettings { size: UVec2::new(0, 8), ..usual }, "size"),

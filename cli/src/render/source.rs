@@ -8,7 +8,9 @@ use varikernel::Image;
 use varikernel::context::DeviceChoice;
 use varikernel::image::ToneMap;
 use varikernel::photon::TraceSettings;
-use varikernel::settings::{Kernel, MAX_PICTURE_RADIUS, MOST_ANTIALIAS, PictureSettings, PixelFilter};
+use varikernel::settings::{
+    Kernel, MAX_PICTURE_RADIUS, MOST_ANTIALIAS, MOST_LIGHT_SAMPLES, PictureSettings, PixelFilter,
+};
 
 use crate::numbers::{fraction, whole, whole_checked_later};
 use crate::photons::{bounces_help, parse_count};
@@ -61,10 +63,10 @@ pub(crate) struct Source {
     #[arg(help_heading = "Kernels")]
     pub(crate) kernel: Option<Kernel>,
 
-    /// Shadow rays of a pixel in penumbra to each area light, of which up to 16 times as many follow where they
-    /// are noisy; places with shadow maps on each light, with --direct shadow-map.
+    /// Shadow rays of a pixel in penumbra to each area light, up to 16 times as many where they are noisy; places
+    /// with shadow maps on each light, with --direct shadow-map. At most 4096.
     #[arg(long, default_value_t = 16, value_name = "NUMBER", allow_negative_numbers = true)]
-    #[arg(value_parser = whole_checked_later(1..=u32::MAX))]
+    #[arg(value_parser = whole_checked_later(1..=MOST_LIGHT_SAMPLES))]
     #[arg(help_heading = "Direct light")]
     pub(crate) light_samples: u32,
 

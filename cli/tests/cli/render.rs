@@ -58,7 +58,7 @@ fn an_exr_holds_every_layer_and_a_png_a_picture() {
     // So small a picture is mostly edges of faces, whose photons tables leave out.
     assert!(answer["energy_error"].as_f64().unwrap() < 0.2, "{answer}");
     let stages: Vec<_> = answer["stages"].as_array().unwrap().iter().map(|of| &of["name"]).collect();
-    assert_eq!(stages, ["surfaces", "direct light", "photons", "light", "file"]);
+    assert_eq!(stages, ["surfaces", "direct light", "edges", "photons", "light", "file"]);
     assert!(answer["account"]["contributing"].as_u64().unwrap() > 3_000, "{answer}");
     let (names, finite) = channels(&place, "a.exr");
     assert!(finite);

@@ -1,21 +1,21 @@
 //! Pixels that may show more than one thing: beside them something else begins.
 
-use glam::{DVec3, IVec2, UVec2, Vec3};
+use glam::{IVec2, UVec2, Vec3};
 
 use crate::image::Image;
 use crate::render::neighbours::Neighbours;
 use crate::render::sight::{First, Sight};
 
 /// The least cosine between the normals of neighbours on one face.
-const AGREEMENT: f32 = 0.98;
+const AGREEMENT: f64 = 0.98;
 /// A neighbour lies off the other's plane by at most this part of what is between them.
-const ASIDE: f32 = 0.2;
+const ASIDE: f64 = 0.2;
 /// Reflectances differ by more than this at an edge of a texture.
 const CONTRAST: f32 = 0.1;
 /// Direct light differs at an edge of a shadow by more than this part of the larger one, and than that of the
-/// mean of the picture: else it is penumbra, or its noise.
+/// picture's median: else it is penumbra, or its noise.
 const SHADOW: f32 = 0.25;
-const SHADOW_OF_MEAN: f32 = 0.1;
+const SHADOW_OF_USUAL: f32 = 0.1;
 
 /// Right, and the next row: with those before, all four neighbours.
 const WAYS: [IVec2; 2] = [IVec2::X, IVec2::Y];
@@ -23,7 +23,7 @@ const WAYS: [IVec2; 2] = [IVec2::X, IVec2::Y];
 /// The pixels at edges, in their order; `direct` is the light at their middles.
 pub(super) fn edges(sight: &Sight, size: UVec2, direct: &Image<[f32; 4]>) -> Vec<u32> {
     let bent = Neighbours::new(size, &sight.bent);
-    let least = SHADOW_OF_MEAN * mean(direct);
+    let least = SHADOW_OF_USUAL * usual(direct);
     let differ = |pixel: u32, other: u32| {
         !share_a_face(&sight.firsts[pixel as usize], &sight.firsts[other as usize])
             || in_contrast(of(direct, pixel), of(direct, other), least)
@@ -64,17 +64,17 @@ fn share_a_face(first: &First, other: &First) -> bool {
             && (first.reflectance - other.reflectance).abs().max_element() <= CONTRAST
 }
 
-/// Over the pixels with any light.
-fn mean(direct: &Image<[f32; 4]>) -> Vec3 {
-    let lit = direct.values().iter().map(|&[red, green, blue, _]| Vec3::new(red, green, blue).as_dvec3());
-    let (sum, count) = lit
-        .filter(|light| light.max_element() > 0.0)
-        .fold((DVec3::ZERO, 0.0), |(sum, count), light| (sum + light, count + 1.0));
-    (sum / f64::max(count, 1.0)).as_vec3()
+/// The median of direct light over the pixels that show a lit surface straight: lamps are far brighter.
+fn usual(direct: &Image<[f32; 4]>) -> f32 {
+    let lit = direct.values().iter().filter(|light| light[3] > 0.0);
+    let mut values: Vec<f32> = lit.map(|light| light[0].max(light[1]).max(light[2])).collect();
+    values.retain(|&value| value > 0.0);
+    let middle = values.len() / 2;
+    if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(middle, f32::total_cmp).1 }
 }
 
-fn in_contrast(light: Vec3, other: Vec3, least: Vec3) -> bool {
-    ((light - other).abs().cmpgt(least.max(SHADOW * light.max(other)))).any()
+fn in_contrast(light: Vec3, other: Vec3, least: f32) -> bool {
+    ((light - other).abs().cmpgt((SHADOW * light.max(other)).max(Vec3::splat(least)))).any()
 }
 
 /// Whether two pixels show different things in mirrors and through glass.
@@ -83,7 +83,7 @@ fn show_differs(bent: &Neighbours<'_>, pixel: u32, other: u32) -> bool {
     let alike = |(place, other): (&_, &_)| {
         let (place, other): (&super::Place, &super::Place) = (place, other);
         (place.surface - other.surface).abs() < 0.5
-            && place.normal.dot(other.normal) >= f64::from(AGREEMENT)
+            && place.normal.dot(other.normal) >= AGREEMENT
             && (place.share - other.share).abs().max_element() <= CONTRAST
     };
     mine.len() != others.len() || !mine.iter().zip(others).all(alike)

@@ -1,11 +1,11 @@
 //! Pixels that are areas: where something else begins beside a pixel, rays through other places of its square
 //! find what part of it each thing fills.
 //!
-//! - Inside of faces the middle of a pixel stands for all of it. At edges of surfaces, of shadows, of textures,
-//!   and of what is seen in mirrors and through glass, some rays are spread evenly over the square.
+//! - Inside of faces the middle of a pixel stands for all of it. At edges of surfaces, of shadows, of
+//!   textures, and of what is seen in mirrors and through glass, some rays are spread evenly over the square.
 //! - What they meet has direct light of its own, by a few shadow rays each. Light by photons is that of the
-//!   nearest pixel's middle on the same surface; in mirrors and behind glass that of the nearest place that a
-//!   pixel shows there, or where there is none near, gathered anew.
+//!   nearest pixel's middle on the same surface, or one that faces the same way; in mirrors and behind glass
+//!   that of the nearest place that a pixel shows there. Where there is none, it is gathered anew.
 //! - Density, radii, irradiance, normals, depth and albedo stay those of pixels' middles.
 //! - Cost: at edges, as many rays as samples, and [`RAYS`] shadow rays for each.
 
@@ -22,7 +22,7 @@ use super::direct::{DirectRays, Samples};
 use super::neighbours::Neighbours;
 use super::sight::{Place, Sight};
 use crate::image::Image;
-use crate::settings::PictureSettings;
+use crate::settings::{PictureSettings, PixelFilter};
 use crate::view::View;
 use edges::edges;
 use reconstruction::reconstruction;
@@ -86,6 +86,9 @@ impl EdgeSamples {
     ) -> Self {
         let each = settings.antialias;
         let pixels = if each > 1 { edges(sight, settings.size, direct) } else { Vec::new() };
+        if pixels.is_empty() {
+            return Self { pixels, samples: Vec::new(), each: each as usize, places: Vec::new() };
+        }
         let shown = Shown {
             view,
             straight: Neighbours::new(settings.size, &sight.straight),
@@ -106,8 +109,7 @@ impl EdgeSamples {
         Self { pixels, samples, each: each as usize, places }
     }
 
-    /// Places in mirrors and behind glass that no pixel's middle shows, nor one near to it; in the order of
-    /// their pixels.
+    /// Places that no pixel's middle shows, nor one near to it; in the order of their pixels.
     pub(super) fn places(&self) -> &[Place] {
         &self.places
     }
@@ -117,11 +119,11 @@ impl EdgeSamples {
         self.pixels.is_empty()
     }
 
-    /// Makes light at pixels' middles into that of their areas; `bent` and `own` are the irradiance at places in
-    /// mirrors and behind glass that middles show, and at [`places`](Self::places).
+    /// Makes light at pixels' middles into that of their areas; `bent` and `own` are the irradiance at places
+    /// in mirrors and behind glass that middles show, and at [`places`](Self::places).
     pub(super) fn spread_over_areas(
         &self,
-        settings: &PictureSettings,
+        filter: PixelFilter,
         layers: &mut Layers,
         [bent, own]: [&[DVec3]; 2],
     ) {
@@ -140,8 +142,7 @@ impl EdgeSamples {
             .map(|sample| (sample.at, [sample.direct, sample.ways.iter().map(light).sum()]))
             .collect();
         let middles = [&layers.direct, &layers.indirect];
-        [layers.direct, layers.indirect] =
-            reconstruction(settings, middles, &self.pixels, &samples, self.each);
+        [layers.direct, layers.indirect] = reconstruction(filter, middles, &self.pixels, &samples, self.each);
         layers.beauty = Image::from_fn(layers.direct.size(), |x, y| {
             let [direct, indirect] =
                 [&layers.direct, &layers.indirect].map(|light| Vec3::from_array(light.at(x, y)));
@@ -175,14 +176,13 @@ impl Shown<'_> {
                 direct += rays.radiance(key, place, RAYS * number..RAYS * (number + 1)).as_vec3();
             }
             let mut ways = Vec::new();
-            for place in &seen.straight {
-                ways.extend(self.of_straight(place).map(|source| Way { share: place.share, source }));
-            }
-            for place in &seen.bent {
-                let source = self.of_bent(place).map_or(Source::Own(own.len()), Source::Bent);
-                if matches!(source, Source::Own(_)) {
+            let straight = seen.straight.iter().map(|place| (place, self.of_straight(place)));
+            let bent = seen.bent.iter().map(|place| (place, self.of_bent(place).map(Source::Bent)));
+            for (place, source) in straight.chain(bent) {
+                let source = source.unwrap_or_else(|| {
                     own.push(*place);
-                }
+                    Source::Own(own.len() - 1)
+                });
                 ways.push(Way { share: place.share, source });
             }
             Sample { at, direct, ways }
@@ -191,18 +191,19 @@ impl Shown<'_> {
         (samples, own)
     }
 
-    /// The pixel whose middle is nearest on the same surface; or else one that faces about the same way.
+    /// The pixel whose middle is nearest on the same surface; or else on one that faces about the same way.
     fn of_straight(&self, place: &Place) -> Option<Source> {
+        let places = self.straight.places;
         let near = |radius: i32| {
             let others = square(radius).flat_map(|away| self.straight.of(place, away));
-            nearest(self.straight.places, place, others)
+            nearest(places, place, others)
         };
-        let found = (1..=AROUND).find_map(near).or_else(|| {
+        let on_any = || {
             let others = square(AROUND).flat_map(|away| self.straight.at(place.pixel, away));
-            let facing = |index: usize| self.straight.places[index].normal.dot(place.normal);
-            others.max_by(|&a, &b| facing(a).total_cmp(&facing(b)))
-        });
-        found.map(|index| Source::Pixel(self.straight.places[index].pixel))
+            nearest(places, place, others)
+        };
+        let found = (1..=AROUND).find_map(near).or_else(on_any);
+        found.map(|index| Source::Pixel(places[index].pixel))
     }
 
     /// A place near to this one that is seen in a mirror or through glass around.

@@ -4,36 +4,31 @@ use glam::{DVec2, UVec2, Vec3};
 use rayon::prelude::*;
 
 use crate::image::Image;
-use crate::render::direct::Samples;
-use crate::settings::{PictureSettings, PixelFilter};
+use crate::settings::PixelFilter;
 
 /// Pictures of two kinds of light, side by side.
 type Both = [Vec3; 2];
 
 /// Pixels from what their middles show and, where `edges` are, from as many samples for `each`, by their
-/// places from the pixel's corner. A pixel inside of a face counts as if it had as many, all alike.
+/// places from the pixel's corner. A pixel inside of a face counts as if it had as many in its middle.
 pub(super) fn reconstruction(
-    settings: &PictureSettings,
+    filter: PixelFilter,
     middles: [&Image<[f32; 3]>; 2],
     edges: &[u32],
     samples: &[(DVec2, Both)],
     each: usize,
 ) -> [Image<[f32; 3]>; 2] {
-    let size = settings.size;
-    let filter = settings.filter;
+    let size = middles[0].size();
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few pixels")]
     let reach = filter.reach().ceil() as u32;
     let middle = |pixel: usize| middles.map(|image| Vec3::from_array(image.values()[pixel]));
     let of_pixel =
         |pixel: u32| edges.binary_search(&pixel).ok().map(|index| &samples[each * index..each * (index + 1)]);
-    // Where nobody looked around, samples would have been here: all that they weigh in a pixel so far away.
-    let spread: Vec<DVec2> = {
-        let samples = Samples::new(settings.seed, 0, u32::MAX);
-        (0..settings.antialias).map(|index| DVec2::from_array(samples.at(index))).collect()
-    };
+    // What the middle weighs that stands for all samples, in a pixel so far away.
+    #[expect(clippy::cast_precision_loss, reason = "at most 1024")]
+    let all = each as f32;
     let usual = Image::from_fn(UVec2::splat(2 * reach + 1), |x, y| {
-        let corner = UVec2::new(x, y).as_dvec2() - f64::from(reach) - 0.5;
-        spread.iter().map(|&at| weight(filter, corner + at)).sum::<f32>()
+        all * weight(filter, UVec2::new(x, y).as_dvec2() - f64::from(reach))
     });
     let found: Vec<Both> = (0..size.element_product())
         .into_par_iter()

@@ -36,6 +36,14 @@ const MOST_DOUBLINGS: u32 = 4;
 const TOLERANCE: f64 = 0.02;
 /// Or of this part of what would arrive if nothing were between: what is nearly dark needs no more.
 const DARK: f64 = 0.25;
+/// Samples where no other could shine on the place: far behind those that any place takes.
+const LAST_RESORT: [Range<u32>; 3] = [
+    samples::MOST - 1024..samples::MOST - 960,
+    samples::MOST - 960..samples::MOST - 704,
+    samples::MOST - 704..samples::MOST,
+];
+/// A place with fewer others around, itself included, gets as many rays as a penumbra.
+const ENOUGH_AROUND: u32 = 9;
 /// Parts of the work, so that progress can be told.
 const PART: usize = 1 << 14;
 
@@ -87,10 +95,11 @@ impl DirectRays<'_> {
             });
         let around = Neighbours::new(size, places);
         let mut is_refined = vec![false; places.len()];
+        let mut front: Vec<usize> = (0..places.len()).collect();
         let mut left = 0.5;
         loop {
             let is_due = |index: &usize| !is_refined[*index] && open(&around, &seen, *index) != 0;
-            let due: Vec<usize> = (0..places.len()).into_par_iter().filter(is_due).collect();
+            let due: Vec<usize> = front.into_par_iter().filter(is_due).collect();
             if due.is_empty() {
                 break;
             }
@@ -102,6 +111,9 @@ impl DirectRays<'_> {
             for (&index, found) in due.iter().zip(found) {
                 (seen[index], is_refined[index]) = (found, true);
             }
+            front = due.par_iter().flat_map_iter(|&index| beside(&around, index)).collect();
+            front.par_sort_unstable();
+            front.dedup();
             left *= 0.5;
         }
         let radiance = |(place, seen): (&Place, &Seen)| place.share.as_dvec3() * seen.irradiance / PI;
@@ -120,10 +132,7 @@ impl DirectRays<'_> {
             if unblocked == Some(DVec3::ZERO) {
                 return DVec3::ZERO;
             }
-            let mut rays = ShadowRays::default();
-            let samples = if light.is_point() { 0..1 } else { samples.clone() };
-            rays.take(self.scene, light, &receiver, self.samples_of(number, light_number), samples);
-            rays.irradiance(unblocked)
+            self.rays(number, light_number, light, &receiver, samples.clone()).irradiance(unblocked)
         };
         place.share.as_dvec3() * (0..).zip(self.scene.lights()).map(of).sum::<DVec3>() / PI
     }
@@ -138,7 +147,7 @@ impl DirectRays<'_> {
         for (number, light) in (0..).zip(self.scene.lights()) {
             let unblocked = light.irradiance(place.position, place.normal);
             if unblocked != Some(DVec3::ZERO) {
-                let rays = self.rays(index, number, light, &receiver, FIRST.min(self.samples));
+                let rays = self.rays(index, number, light, &receiver, 0..FIRST.min(self.samples));
                 seen.add(number, light, &rays, unblocked);
             }
         }
@@ -157,11 +166,10 @@ impl DirectRays<'_> {
             }
             let is_open = open >> (number % 64) & 1 == 1 && !light.is_point();
             let first = if is_open { self.samples } else { FIRST.min(self.samples) };
-            let mut rays = self.rays(index, number, light, &receiver, first);
+            let mut rays = self.rays(index, number, light, &receiver, 0..first);
             if is_open {
                 for doubling in 1..=MOST_DOUBLINGS {
-                    let most = unblocked.unwrap_or_else(|| rays.irradiance(None));
-                    if rays.error_of_share() * mean(most) <= enough {
+                    if rays.error(unblocked) <= enough {
                         break;
                     }
                     let [from, to] = [doubling - 1, doubling]
@@ -174,10 +182,28 @@ impl DirectRays<'_> {
         seen
     }
 
-    fn rays(&self, index: u32, number: u32, light: &Light, receiver: &Receiver, count: u32) -> ShadowRays {
+    fn rays(
+        &self,
+        index: u32,
+        number: u32,
+        light: &Light,
+        receiver: &Receiver,
+        samples: Range<u32>,
+    ) -> ShadowRays {
         let mut rays = ShadowRays::default();
-        let count = if light.is_point() { 1 } else { count.min(samples::MOST) };
-        rays.take(self.scene, light, receiver, self.samples_of(index, number), 0..count);
+        let spread = self.samples_of(index, number);
+        if light.is_point() {
+            rays.take(self.scene, light, receiver, spread, 0..1);
+            return rays;
+        }
+        rays.take(self.scene, light, receiver, spread, samples);
+        // Of a light that is mostly behind the place, those before do not count.
+        for more in LAST_RESORT {
+            if !rays.met_nothing() {
+                break;
+            }
+            rays.take(self.scene, light, receiver, spread, more);
+        }
         rays
     }
 
@@ -190,16 +216,23 @@ impl DirectRays<'_> {
 fn open(around: &Neighbours<'_>, seen: &[Seen], index: usize) -> u64 {
     let own = seen[index];
     let mut open = own.open;
-    for y in -AROUND..=AROUND {
-        for x in -AROUND..=AROUND {
-            for other in around.of(&around.places[index], IVec2::new(x, y)) {
-                let other = seen[other];
-                open |= other.open | own.whole & other.dark | own.dark & other.whole;
-            }
-        }
+    let mut count = 0;
+    for other in beside(around, index) {
+        let other = seen[other];
+        count += 1;
+        open |= other.open | own.whole & other.dark | own.dark & other.whole;
+    }
+    if count < ENOUGH_AROUND {
+        open = u64::MAX;
     }
     // Lights of one bit may differ among themselves.
     (open | own.whole & own.dark) & (own.whole | own.dark | own.open)
+}
+
+/// A place, and those of its surface that are [`AROUND`] it.
+fn beside(around: &Neighbours<'_>, index: usize) -> impl Iterator<Item = usize> {
+    let aways = (-AROUND..=AROUND).flat_map(|y| (-AROUND..=AROUND).map(move |x| IVec2::new(x, y)));
+    aways.flat_map(move |away| around.of(&around.places[index], away))
 }
 
 /// A value for each number below `count`, on all threads.

@@ -53,6 +53,9 @@ pub(in crate::render) struct ShadowRays {
     /// Irradiance of samples, as if each were all of the light: of those that were seen, and of all.
     of_seen: DVec3,
     of_all: DVec3,
+    /// Squares of their means over the colours.
+    squares_of_seen: f64,
+    squares_of_all: f64,
 }
 
 impl ShadowRays {
@@ -68,11 +71,14 @@ impl ShadowRays {
         self.taken += numbers.end - numbers.start;
         for index in numbers {
             if let Some((arrives, is_seen)) = receiver.sample(scene, light, samples.at(index)) {
+                let square = mean(arrives).powi(2);
                 self.cast += 1;
                 self.of_all += arrives;
+                self.squares_of_all += square;
                 if is_seen {
                     self.seen += 1;
                     self.of_seen += arrives;
+                    self.squares_of_seen += square;
                 }
             }
         }
@@ -83,8 +89,8 @@ impl ShadowRays {
     /// 2018). Without `unblocked`, what the samples say.
     pub(in crate::render) fn irradiance(&self, unblocked: Option<DVec3>) -> DVec3 {
         match unblocked {
-            // Less of the light is above the horizon than any sample met: it is taken as seen.
-            Some(whole) if self.cast == 0 => whole,
+            // Less of the light is above the horizon than any sample met.
+            Some(_) if self.cast == 0 => DVec3::ZERO,
             Some(whole) => whole * (self.of_seen.element_sum() / self.of_all.element_sum()),
             None => self.of_seen / f64::from(self.taken.max(1)),
         }
@@ -99,12 +105,32 @@ impl ShadowRays {
         self.seen == self.cast
     }
 
-    /// About how far off the share is that is seen: by chance it would be the binomial distribution's root of
-    /// p (1 - p) / n; points that are spread evenly come nearer to the area of a shape by another root of the
-    /// root of n. But what is smaller than the part of a sample may be missed.
-    pub(in crate::render) fn error_of_share(&self) -> f64 {
-        let cast = f64::from(self.cast.max(1));
-        let share = f64::from(self.seen) / cast;
-        ((share * (1.0 - share)).sqrt() / cast.powf(0.75)).max(1.0 / cast)
+    /// Whether no sample could shine on the place.
+    pub(in crate::render) fn met_nothing(&self) -> bool {
+        self.cast == 0
     }
+
+    /// About how far off the irradiance is, in the mean over the colours.
+    ///
+    /// By chance, a share p of n alike samples would be off by the root of p (1 - p) / n; points that are
+    /// spread evenly come nearer to the area of a shape by another root of the root of n. But what is smaller
+    /// than the part of a sample may be missed. Samples that differ count as fewer: the square of their sum
+    /// over the sum of their squares. Without `unblocked`, it is the light itself that varies, and not its
+    /// share.
+    pub(in crate::render) fn error(&self, unblocked: Option<DVec3>) -> f64 {
+        let alike = |sum: DVec3, squares: f64| if squares > 0.0 { mean(sum).powi(2) / squares } else { 1.0 };
+        let light = mean(self.irradiance(unblocked));
+        let Some(whole) = unblocked.map(mean) else {
+            let taken = f64::from(self.taken.max(1));
+            let varies = (taken / alike(self.of_seen, self.squares_of_seen) - 1.0).max(0.0).sqrt();
+            return light * (varies / taken.powf(0.75)).max(1.0 / taken);
+        };
+        let count = alike(self.of_all, self.squares_of_all);
+        let share = if whole > 0.0 { light / whole } else { 0.0 };
+        whole * ((share * (1.0 - share)).max(0.0).sqrt() / count.powf(0.75)).max(1.0 / count)
+    }
+}
+
+fn mean(light: DVec3) -> f64 {
+    light.element_sum() / 3.0
 }

@@ -66,7 +66,7 @@ impl Arrived {
     /// shadows", 2018).
     fn irradiance(&self, samples: u32) -> Vec3 {
         match self.unblocked {
-            Some(whole) => whole * self.of_seen / self.of_all.max(Vec3::splat(f32::MIN_POSITIVE)),
+            Some(whole) => whole * (self.of_seen / self.of_all.max(Vec3::splat(f32::MIN_POSITIVE))),
             #[expect(clippy::cast_precision_loss, reason = "a few")]
             None => self.of_seen / samples.max(1) as f32,
         }

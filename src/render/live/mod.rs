@@ -68,7 +68,7 @@ impl Shown {
     fn new(stage: &SurfaceStage, scene: &Scene, settings: &LiveSettings) -> Result<Self> {
         let view = settings.view(scene);
         let mut surfaces = stage.draw(scene, view)?;
-        let sight = Sight::new(scene, &view);
+        let sight = Sight::new(scene, &view, false);
         sight.paint(&mut surfaces)?;
         let through = ProgressiveThrough::new(view, sight.bent.clone());
         Ok(Self { surfaces, direct: ProgressiveDirect::new(settings.size, sight, settings.seed), through })

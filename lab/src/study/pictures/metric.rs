@@ -102,7 +102,7 @@ impl<'a> Sweep<'a> {
         ways
     }
 
-    /// Whether a way has rows of all seeds that any has: the first seed alone draws what others needn't.
+    /// Whether a way has a row of the last seed that any has: the first seed alone draws what others needn't.
     pub(super) fn is_whole(&self, way: Way) -> bool {
         let most = self.rows.iter().map(|row| row.seed).max();
         most.is_some_and(|most| self.of(way).iter().any(|row| row.seed == most))
