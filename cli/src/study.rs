@@ -60,7 +60,8 @@ struct Extent {
     #[arg(long, conflicts_with = "quick")]
     full: bool,
 
-    /// Seeds of each picture; errors are told with their intervals [default: 5; 2 with --quick].
+    /// Seeds of each picture, 2 where photons are many; errors are told with their intervals [default: 5; 2
+    /// with --quick].
     #[arg(long, value_name = "NUMBER", value_parser = whole(2..=1000))]
     #[arg(allow_negative_numbers = true)]
     seeds: Option<u32>,

@@ -2,7 +2,9 @@
 
 use crate::image::Image;
 
-/// A picture and what led to it, pixel by pixel. Colours are linear RGB radiance.
+/// A picture and what led to it, pixel by pixel. Colours are linear RGB radiance. `beauty`, `direct` and
+/// `indirect` are of pixels' areas, as [`antialias`](crate::settings::PictureSettings::antialias) asks; all
+/// else is of their middles.
 #[derive(Clone, Debug)]
 pub struct Layers {
     /// Direct plus indirect light.

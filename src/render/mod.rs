@@ -94,7 +94,7 @@ impl Renderer {
         // What can be refused is refused before anything is traced.
         let emission = Emission::new(scene, trace)?;
         let prepared = Prepared::new(gl, scene, settings, progress)?;
-        let wanted = prepared.shows_bent().then(|| Wanted::of(&settings.irradiance()));
+        let wanted = prepared.gathers().then(|| Wanted::of(&settings.irradiance()));
         let view = prepared.surfaces.view();
         let traced = Traced::new(gl, scene, view, &emission, wanted, settings.first_bounce, progress)?;
         Self::assemble(gl, prepared, traced, settings)
@@ -120,7 +120,7 @@ impl Renderer {
         let seen: Vec<_> = photons.iter().copied().filter(|photon| photon.may_be_seen(view)).collect();
         points.upload(&seen)?;
         let wanted = Wanted::of(&settings.irradiance());
-        let landed = prepared.shows_bent().then(|| Landed::new(photons, wanted));
+        let landed = prepared.gathers().then(|| Landed::new(photons, wanted));
         let count = u32::try_from(photons.len()).expect("fewer than 2^32 photons");
         let traced = Traced { emitted: count, landings: count.into(), cut_off_share: 0.0, points, landed };
         Self::assemble(gl, prepared, traced, settings)

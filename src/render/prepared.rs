@@ -24,8 +24,9 @@ pub(super) struct Prepared {
 }
 
 impl Prepared {
-    /// Whether anything is seen in mirrors or through glass.
-    pub(super) fn shows_bent(&self) -> bool {
+    /// Whether photons are gathered around places: those in mirrors and behind glass, and at edges those that no
+    /// pixel's middle shows.
+    pub(super) fn gathers(&self) -> bool {
         !self.bent.is_empty() || !self.edges.places().is_empty()
     }
 

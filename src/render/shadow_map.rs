@@ -12,9 +12,8 @@
 //! - Places are the same for all pixels: few of them give steps, where rays give noise. They tell which share
 //!   of a light is seen; how bright it is has a closed form, as with rays.
 //! - Cost: for each place a draw of the scene and one pass over the picture for each side of the cube that it
-//!   shines through: five for area lights, one for a narrow cone. On llvmpipe that is about twice the
-//!   processor time of as many rays (`render cornell-boxes --photons 1e3`: 3.3 s against 1.6 s in all).
-//!   Memory: 16 bytes a pixel, 2 MiB, and 64 bytes for each primitive.
+//!   shines through: five for area lights, one for a narrow cone. Memory: 16 bytes a pixel,
+//!   2 MiB, and 64 bytes for each primitive.
 
 use std::f64::consts::PI;
 

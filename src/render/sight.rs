@@ -118,6 +118,7 @@ impl Sight {
         let distance = way + hit.distance;
         let side = if hit.normal.dot(ray.direction) <= 0.0 { 1.0 } else { -1.0 };
         let facing = side * hit.normal;
+        let scattering = scene.scattering(&hit);
         if depth == 0
             && let Some(first) = self.firsts.last_mut()
         {
@@ -125,7 +126,11 @@ impl Sight {
                 surface: hit.surface + 1,
                 position: hit.position,
                 normal: facing,
-                reflectance: Vec3::ZERO,
+                reflectance: if let Scattering::Lambert(reflectance) = scattering {
+                    reflectance
+                } else {
+                    Vec3::ZERO
+                },
             };
         }
         let mut go = |direction: DVec3, side: DVec3, share: Vec3| {
@@ -134,13 +139,8 @@ impl Sight {
                 self.follow(scene, pixel, &ray, share, distance, depth + 1);
             }
         };
-        match scene.scattering(&hit) {
+        match scattering {
             Scattering::Lambert(reflectance) => {
-                if depth == 0
-                    && let Some(first) = self.firsts.last_mut()
-                {
-                    first.reflectance = reflectance;
-                }
                 if depth == 0 && scene.has_patterns() {
                     self.albedos.push((pixel, reflectance));
                 }

@@ -7,6 +7,7 @@ use varikernel::scene::Scene;
 use varikernel::settings::{Estimate, Kernel, KernelRadius, PictureSettings, PixelFilter};
 use varikernel::{Gl, Image};
 
+use crate::furnace::room;
 use crate::stage::{scene, settings};
 use crate::support::egl;
 
@@ -115,33 +116,10 @@ fn pixels_inside_of_faces_stay_as_they_are_and_edges_do_not() {
 #[test]
 fn a_room_that_shines_evenly_has_no_seams() {
     let gl = egl();
-    let walls = |material: &str| {
-        format!(
-            "
-[camera]
-position = [0.1, 0.2, 0.3]
-direction = [-0.3, -0.2, -1]
-up = [0, 1, 0]
-vertical_fov_degrees = 70
-[materials]
-wall = {{ lambert = [0, 0, 0], emission = [1, 1, 1] }}
-{material}
-[surfaces.room]
-material = \"wall\"
-quads = [
-  [[-1, 1, -1], [-1, 1, 1], [-1, -1, 1], [-1, -1, -1]],
-  [[1, -1, 1], [1, 1, 1], [1, 1, -1], [1, -1, -1]],
-  [[-1, -1, 1], [1, -1, 1], [1, -1, -1], [-1, -1, -1]],
-  [[1, 1, -1], [1, 1, 1], [-1, 1, 1], [-1, 1, -1]],
-  [[1, -1, -1], [1, 1, -1], [-1, 1, -1], [-1, -1, -1]],
-  [[-1, 1, 1], [1, 1, 1], [1, -1, 1], [-1, -1, 1]],
-]"
-        )
-    };
-    let ball = "glass = { dielectric = 1.5 }\n[surfaces.ball]\nmaterial = \"glass\"\n\
+    let ball = "[materials.glass]\ndielectric = 1.5\n[surfaces.ball]\nmaterial = \"glass\"\n\
                 spheres = [{ centre = [-0.2, 0, -0.6], radius = 0.3 }]";
-    for (material, tolerance) in [("", 1e-6), (ball, 5e-3)] {
-        let scene = scene(&walls(material));
+    for (others, tolerance) in [("", 1e-6), (ball, 5e-3)] {
+        let scene = room("lambert = [0, 0, 0], emission = [1, 1, 1]", others);
         for filter in [PixelFilter::Box, PixelFilter::BlackmanHarris, PixelFilter::Mitchell] {
             let beauty = picture(&gl, &scene, &PictureSettings { filter, ..asked(24, 8) }).beauty;
             for light in beauty.values() {

@@ -15,8 +15,8 @@ use crate::support::egl;
 const SIDE: u32 = 16;
 const EMISSION: f64 = 0.2;
 
-/// A room around the camera with walls of one material; the quads face inwards.
-fn room(material: &str) -> Scene {
+/// A room around the camera with walls of one material, and `others`; the quads face inwards.
+pub(crate) fn room(material: &str, others: &str) -> Scene {
     scene(&format!(
         r#"
         title = "A furnace"
@@ -38,15 +38,17 @@ fn room(material: &str) -> Scene {
           [[1, -1, -1], [1, 1, -1], [-1, 1, -1], [-1, -1, -1]],
           [[-1, 1, 1], [1, 1, 1], [1, -1, 1], [-1, -1, 1]],
         ]
+        {others}
         "#
     ))
 }
 
 fn furnace(reflectance: f64) -> Scene {
-    room(&format!(
+    let material = format!(
         "lambert = [{reflectance}, {reflectance}, {reflectance}], emission = [{EMISSION}, \
          {EMISSION}, {EMISSION}]"
-    ))
+    );
+    room(&material, "")
 }
 
 fn mean(image: &Image<[f32; 3]>) -> f64 {

@@ -4,7 +4,7 @@ use glam::{IVec2, UVec2, Vec3};
 
 use crate::image::Image;
 use crate::render::neighbours::Neighbours;
-use crate::render::sight::{First, Sight};
+use crate::render::sight::{First, Place};
 
 /// The least cosine between the normals of neighbours on one face.
 const AGREEMENT: f64 = 0.98;
@@ -20,14 +20,15 @@ const SHADOW_OF_USUAL: f32 = 0.1;
 /// Right, and the next row: with those before, all four neighbours.
 const WAYS: [IVec2; 2] = [IVec2::X, IVec2::Y];
 
-/// The pixels at edges, in their order; `direct` is the light at their middles.
-pub(super) fn edges(sight: &Sight, size: UVec2, direct: &Image<[f32; 4]>) -> Vec<u32> {
-    let bent = Neighbours::new(size, &sight.bent);
+/// The pixels at edges, in their order, by what each meets first, what is `bent` there, and the direct light at
+/// its middle.
+pub(super) fn edges(firsts: &[First], bent: &Neighbours<'_>, direct: &Image<[f32; 4]>) -> Vec<u32> {
+    let size = direct.size();
     let least = SHADOW_OF_USUAL * usual(direct);
     let differ = |pixel: u32, other: u32| {
-        !share_a_face(&sight.firsts[pixel as usize], &sight.firsts[other as usize])
+        !share_a_face(&firsts[pixel as usize], &firsts[other as usize])
             || in_contrast(of(direct, pixel), of(direct, other), least)
-            || show_differs(&bent, pixel, other)
+            || show_differs(bent, pixel, other)
     };
     let mut is_edge = vec![false; size.element_product() as usize];
     for pixel in 0..size.element_product() {
@@ -80,8 +81,7 @@ fn in_contrast(light: Vec3, other: Vec3, least: f32) -> bool {
 /// Whether two pixels show different things in mirrors and through glass.
 fn show_differs(bent: &Neighbours<'_>, pixel: u32, other: u32) -> bool {
     let [mine, others] = [pixel, other].map(|pixel| &bent.places[bent.of_pixel(pixel)]);
-    let alike = |(place, other): (&_, &_)| {
-        let (place, other): (&super::Place, &super::Place) = (place, other);
+    let alike = |(place, other): (&Place, &Place)| {
         (place.surface - other.surface).abs() < 0.5
             && place.normal.dot(other.normal) >= AGREEMENT
             && (place.share - other.share).abs().max_element() <= CONTRAST

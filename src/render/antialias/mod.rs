@@ -85,15 +85,15 @@ impl EdgeSamples {
         settings: &PictureSettings,
     ) -> Self {
         let each = settings.antialias;
-        let pixels = if each > 1 { edges(sight, settings.size, direct) } else { Vec::new() };
-        if pixels.is_empty() {
-            return Self { pixels, samples: Vec::new(), each: each as usize, places: Vec::new() };
+        if each == 1 {
+            return Self { pixels: Vec::new(), samples: Vec::new(), each: 1, places: Vec::new() };
         }
         let shown = Shown {
             view,
             straight: Neighbours::new(settings.size, &sight.straight),
             bent: Neighbours::new(settings.size, &sight.bent),
         };
+        let pixels = edges(&sight.firsts, &shown.bent, direct);
         let of_pixel = |&pixel: &u32| shown.look_around(rays, pixel, each);
         let found: Vec<(Vec<Sample>, Vec<Place>)> = pixels.par_iter().map(of_pixel).collect();
         let (mut samples, mut places) = (Vec::new(), Vec::new());

@@ -23,6 +23,7 @@ use glam::{DVec3, IVec2, UVec2, Vec3};
 use rayon::prelude::*;
 
 use super::neighbours::Neighbours;
+use super::rings::mean;
 use super::sight::Place;
 use crate::scene::{Light, Scene};
 
@@ -127,55 +128,50 @@ impl DirectRays<'_> {
             return DVec3::ZERO;
         }
         let receiver = Receiver::new(self.scene, place.position, place.normal);
-        let of = |(light_number, light): (u32, &Light)| {
-            let unblocked = light.irradiance(place.position, place.normal);
-            if unblocked == Some(DVec3::ZERO) {
-                return DVec3::ZERO;
-            }
+        let of = |(light_number, light, unblocked): (u32, &Light, Option<DVec3>)| {
             self.rays(number, light_number, light, &receiver, samples.clone()).irradiance(unblocked)
         };
-        place.share.as_dvec3() * (0..).zip(self.scene.lights()).map(of).sum::<DVec3>() / PI
+        place.share.as_dvec3() * self.shining(place).map(of).sum::<DVec3>() / PI
     }
 
-    fn first(&self, index: u32, place: &Place) -> Seen {
-        let mut seen = Seen::default();
-        // What reflects nothing, as most lights, needs no shadow rays.
-        if place.share == Vec3::ZERO {
-            return seen;
-        }
-        let receiver = Receiver::new(self.scene, place.position, place.normal);
-        for (number, light) in (0..).zip(self.scene.lights()) {
+    /// Lights that would shine on a place if nothing were between, by their numbers, with the irradiance if it
+    /// has a closed form.
+    fn shining<'a>(&'a self, place: &'a Place) -> impl Iterator<Item = (u32, &'a Light, Option<DVec3>)> {
+        let of = |(number, light): (u32, &'a Light)| {
             let unblocked = light.irradiance(place.position, place.normal);
-            if unblocked != Some(DVec3::ZERO) {
-                let rays = self.rays(index, number, light, &receiver, 0..FIRST.min(self.samples));
-                seen.add(number, light, &rays, unblocked);
-            }
-        }
-        seen
+            (unblocked != Some(DVec3::ZERO)).then_some((number, light, unblocked))
+        };
+        (0..).zip(self.scene.lights()).filter_map(of)
+    }
+
+    /// What a place sees by its first rays.
+    fn first(&self, index: u32, place: &Place) -> Seen {
+        // What reflects nothing, as most lights, needs no shadow rays.
+        if place.share == Vec3::ZERO { Seen::default() } else { self.look(index, place, 0, f64::INFINITY) }
     }
 
     /// The same with more rays to the lights that are open.
     fn refined(&self, index: u32, place: &Place, first: &Seen, open: u64) -> Seen {
-        let receiver = Receiver::new(self.scene, place.position, place.normal);
         let enough = TOLERANCE * mean(first.irradiance).max(DARK * mean(first.unblocked));
+        self.look(index, place, open, enough)
+    }
+
+    /// What a place sees by a few rays to each light, and to those that are open by as many as it takes until
+    /// irradiance is off by no more than `enough`.
+    fn look(&self, index: u32, place: &Place, open: u64, enough: f64) -> Seen {
+        let receiver = Receiver::new(self.scene, place.position, place.normal);
         let mut seen = Seen::default();
-        for (number, light) in (0..).zip(self.scene.lights()) {
-            let unblocked = light.irradiance(place.position, place.normal);
-            if unblocked == Some(DVec3::ZERO) {
-                continue;
-            }
+        for (number, light, unblocked) in self.shining(place) {
             let is_open = open >> (number % 64) & 1 == 1 && !light.is_point();
             let first = if is_open { self.samples } else { FIRST.min(self.samples) };
             let mut rays = self.rays(index, number, light, &receiver, 0..first);
-            if is_open {
-                for doubling in 1..=MOST_DOUBLINGS {
-                    if rays.error(unblocked) <= enough {
-                        break;
-                    }
-                    let [from, to] = [doubling - 1, doubling]
-                        .map(|doublings| self.samples.saturating_mul(1 << doublings).min(samples::MOST));
-                    rays.take(self.scene, light, &receiver, self.samples_of(index, number), from..to);
+            for doubling in 1..=if is_open { MOST_DOUBLINGS } else { 0 } {
+                if rays.error(unblocked) <= enough {
+                    break;
                 }
+                let [from, to] = [doubling - 1, doubling]
+                    .map(|doublings| self.samples.saturating_mul(1 << doublings).min(samples::MOST));
+                rays.take(self.scene, light, &receiver, self.samples_of(index, number), from..to);
             }
             seen.add(number, light, &rays, unblocked);
         }
@@ -249,8 +245,4 @@ fn in_parts<T: Send>(count: usize, of: impl Fn(usize) -> T + Sync, show: &mut dy
 
 fn number(index: usize) -> u32 {
     u32::try_from(index).expect("fewer than 2^32 places")
-}
-
-fn mean(light: DVec3) -> f64 {
-    light.element_sum() / 3.0
 }

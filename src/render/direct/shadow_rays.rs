@@ -5,6 +5,7 @@ use std::ops::Range;
 use glam::DVec3;
 
 use super::samples::Samples;
+use crate::render::rings::mean;
 use crate::scene::{Light, Ray, Scene};
 
 /// A shadow ray ends this share of its length before the light, which may itself be a surface.
@@ -129,8 +130,4 @@ impl ShadowRays {
         let share = if whole > 0.0 { light / whole } else { 0.0 };
         whole * ((share * (1.0 - share)).max(0.0).sqrt() / count.powf(0.75)).max(1.0 / count)
     }
-}
-
-fn mean(light: DVec3) -> f64 {
-    light.element_sum() / 3.0
 }

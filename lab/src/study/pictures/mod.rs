@@ -3,7 +3,8 @@
 //!
 //! Each scene has a reference of many photons without kernels, of other seeds. Against it stand pictures of
 //! some numbers of photons, with some n and some fixed radii, of some seeds each; all pictures of a seed are
-//! drawn from the same photons. The fixed radius is chosen knowing the answer, for each scene, number of
+//! drawn from the same photons. The first seed is swept over all widths, the others are drawn with the best ones
+//! and those beside them. The fixed radius is chosen knowing the answer, for each scene, number of
 //! photons and metric anew, from a sweep that goes on until the best is not at its end. So the comparison
 //! favours the fixed radius: in practice the best one is unknown.
 //!
