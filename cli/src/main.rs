@@ -1,10 +1,12 @@
 //! The program, one file a verb: parse, run, print the error chain, exit code.
 
+mod against;
 mod bench;
 mod compare;
 mod device;
 mod devices;
 mod figures;
+mod flicker;
 mod glsl;
 mod interrupt;
 mod light;

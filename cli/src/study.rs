@@ -14,7 +14,7 @@ use super::bench::targets;
 use super::numbers::whole;
 use super::saving::{Autosave, Resume, how_to_go_on};
 use super::share_bar::ShareBar;
-use super::{Outcome, device, output, real_map};
+use super::{Outcome, against, device, flicker, output, real_map};
 
 /// What was found so far is saved as often as this.
 const SAVE_EVERY: Duration = Duration::from_secs(10);
@@ -26,6 +26,11 @@ const SAVE_EVERY: Duration = Duration::from_secs(10);
 /// pictures by light from tables, variable radii and gathers with the best fixed radii, which also judges the
 /// targets of light from tables and tells bias from noise. The folder gets study.html to look at, study.csv
 /// with a row for each measurement, and study.json. Errors are the same at each run, times are not.
+///
+/// With --against, nothing is drawn: pictures that any renderer made are judged instead, by a CSV file with the
+/// columns scene, way (the renderer and its version), options, seed, seconds and file, an EXR beside it. The way
+/// "reference" is for pictures whose mean is right, and "layers" for an EXR of `varikernel render`, by which
+/// edges, caustics and penumbras are judged apart. The folder gets against.html, against.csv and against.json.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
     /// Folder to write to; made if it is missing.
@@ -40,11 +45,21 @@ pub(crate) struct Args {
     #[arg(long)]
     resume: bool,
 
+    /// Judge the pictures that this CSV file names instead.
+    #[arg(long, value_name = "FILE")]
+    #[arg(conflicts_with_all = ["quick", "full", "seeds", "resume", "device"])]
+    against: Option<PathBuf>,
+
+    /// Measure instead how much light changes from frame to frame by noise alone, where nothing, the camera or
+    /// the lamp moves, and what photons that are kept for 8 frames do about it: flicker.json.
+    #[arg(long, conflicts_with_all = ["against", "full", "seeds", "resume"])]
+    flicker: bool,
+
     /// OpenGL device: auto, egl, egl:INDEX, osmesa, or part of a renderer's name.
     #[arg(long, default_value_t = DeviceChoice::Auto)]
     device: DeviceChoice,
 
-    /// Print study.json instead of tables.
+    /// Print study.json, against.json or flicker.json instead of tables.
     #[arg(long)]
     json: bool,
 }
@@ -82,6 +97,12 @@ impl Extent {
 }
 
 pub(crate) fn run(args: &Args) -> Result<Outcome> {
+    if let Some(file) = &args.against {
+        return against::run(file, &args.output, args.json);
+    }
+    if args.flicker {
+        return flicker::run(&args.device, &args.output, args.extent.quick, args.json);
+    }
     let settings = args.extent.settings();
     let files = Files { folder: &args.output };
     let earlier = if args.resume { Some(files.load()?) } else { None };

@@ -8,16 +8,20 @@
 //! | [`bench`](mod@bench) | how long does each stage of each method take, in copies? |
 //! | [`rivals`] | how long does plain code on the processor take for the same radii? |
 //! | [`study`] | how does run time trade against error, for every way to a radius map, and for pictures? |
+//! | [`against`] | how far are pictures of other renderers, and ours, from a reference after the same time? |
+//! | [`flicker`] | how much does light change from frame to frame by noise alone? |
 //! | [`stress`] | do the promises about exact numbers hold on this device? |
 //! | [`thesis`] | what did the thesis print, and does each of its claims hold? |
 //! | [`reproduce`] | both together, in one run that can be resumed |
 //! | [`report`] | the page of that run |
 //! | [`synth`] | seeded test maps |
 
+pub mod against;
 pub mod bench;
 mod chart;
 mod confidence;
 mod fingerprint;
+pub mod flicker;
 mod halves;
 mod picture;
 pub mod report;
@@ -33,7 +37,7 @@ mod welch;
 
 pub use confidence::{CONFIDENCE_LEVEL, Confidence, RatioInterval};
 pub use halves::ReferenceHalves;
-pub use picture::{LightError, PictureError};
+pub use picture::{LightError, PictureError, caustic_and_walls};
 pub use statistics::Statistics;
 pub use summary::{RadiusSummary, total_photons};
 pub use welch::Welch;

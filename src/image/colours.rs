@@ -11,6 +11,8 @@ use super::files::{Format, check_signature, open_file};
 use super::{Image, exr, png};
 use crate::error::{Error, Result};
 
+const RGB: [&str; 3] = ["R", "G", "B"];
+
 /// A picture as its file holds it. Row 0 is the first row of the file.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Colours {
@@ -43,10 +45,27 @@ pub fn read_colours(path: &Path) -> Result<Colours> {
     }
     let (mut file, length) = open_file(path)?;
     let found = check_signature(&mut file, format).and_then(|()| match format {
-        Format::Exr => exr::read_rgb(file, length, &ReadOptions::default()).map(Colours::Radiance),
+        Format::Exr => exr::read_channels(file, length, RGB, &ReadOptions::default()).map(Colours::Radiance),
         _ => read_png(file, length).map(Colours::Encoded),
     });
     found.map_err(|problem| Error::file(path, problem.what, problem.remedy))
+}
+
+/// Reads channels of an EXR file by their names, as [`LayerFile`](super::LayerFile) writes them:
+/// `["direct.R", "direct.G", "direct.B"]`, or `["depth.Y"]`. They are f16, f32 or u32.
+///
+/// # Errors
+/// [`Error::File`] if there is no such file, it is no EXR, has no layer with all of them, is damaged, or larger
+/// than [`ReadOptions::default`] allows for maps.
+pub fn read_channels<const COUNT: usize>(path: &Path, names: [&str; COUNT]) -> Result<Image<[f32; COUNT]>> {
+    let format = Format::of(path)?;
+    if format != Format::Exr {
+        return Err(Error::file(path, "only EXR files have named channels", "give an EXR file"));
+    }
+    let (mut file, length) = open_file(path)?;
+    check_signature(&mut file, format)
+        .and_then(|()| exr::read_channels(file, length, names, &ReadOptions::default()))
+        .map_err(|problem| Error::file(path, problem.what, problem.remedy))
 }
 
 fn read_png(mut file: impl BufRead + Seek, length: u64) -> Result<Image<[u8; 3]>, Problem> {
@@ -83,6 +102,9 @@ mod tests {
         let file = LayerFile::new(size).colours("direct", letters, &other).colours("", letters, &radiance);
         file.write(&path("a.exr"), &[]).expect("written");
         assert_eq!(read_colours(&path("a.exr")).expect("read"), Colours::Radiance(radiance));
+        let named = read_channels(&path("a.exr"), ["direct.R", "direct.G", "direct.B"]);
+        assert_eq!(named.expect("read"), other);
+        assert_eq!(read_channels(&path("a.exr"), ["direct.G"]).expect("read"), Image::filled(size, [9.0]));
         let encoded =
             Image::from_fn(size, |x, y| [x, y, 255].map(|value| u8::try_from(value).expect("small")));
         write_colours(&path("a.png"), &encoded).expect("written");
@@ -102,7 +124,10 @@ mod tests {
         let size = UVec2::new(3, 2);
         let file = LayerFile::new(size).values("depth", &Image::filled(size, 1.0));
         file.write(&path("depth.exr"), &[]).expect("written");
-        refused("depth.exr", "help:");
+        refused("depth.exr", "no channels R, G and B, but depth");
+        let error = read_channels(&path("depth.exr"), ["normal.X"]).expect_err("no such").to_string();
+        assert!(error.contains("no channel normal.X, but depth"), "{error}");
+        assert!(read_channels(&path("a.png"), ["R"]).is_err(), "no EXR");
         let file = LayerFile::new(size).colours("", ['R', 'G', 'B'], &Image::filled(size, [1.0; 3]));
         file.write(&path("cut.exr"), &[]).expect("written");
         let bytes = std::fs::read(path("cut.exr")).expect("read");

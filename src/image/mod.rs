@@ -39,7 +39,7 @@ pub use attribute::{Attribute, AttributeValue};
 #[cfg(feature = "files")]
 pub use colour_map::colour_of_bar;
 #[cfg(feature = "scene")]
-pub use colours::{Colours, read_colours};
+pub use colours::{Colours, read_channels, read_colours};
 #[cfg(feature = "files")]
 pub use counts::ReadOptions;
 pub use difference::{Difference, Place};

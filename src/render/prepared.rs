@@ -1,9 +1,9 @@
 //! What a picture needs before any photon: what its pixels show, and direct light there.
 
-use super::antialias::EdgeSamples;
+use super::antialias::{EdgeSamples, Middles};
 use super::direct::DirectRays;
 use super::sight::{Place, Sight};
-use super::{Progress, add};
+use super::{Progress, add, rgb};
 use crate::error::Result;
 use crate::gl::Gl;
 use crate::image::Image;
@@ -46,9 +46,6 @@ impl Prepared {
         // Straight places come first, then bent ones.
         let mut show = |done: f64| progress(Progress { stage: "direct light", done: straight * done });
         let mut direct = Image::filled(settings.size, [0.0; 4]);
-        for &(pixel, radiance) in &sight.lights {
-            add(&mut direct, pixel, radiance.as_dvec3());
-        }
         let rays = DirectRays { scene, samples: settings.light_samples, seed: settings.seed };
         let found = match settings.direct {
             DirectLight::Traced => rays.reflected(settings.size, &sight.straight, &mut show),
@@ -70,9 +67,18 @@ impl Prepared {
             let [red, green, blue, _] = direct.at(x, y);
             direct.set(x, y, [red, green, blue, 1.0]);
         }
+        let mut emitted = Image::filled(settings.size, [0.0; 4]);
+        for &(pixel, radiance) in &sight.lights {
+            add(&mut emitted, pixel, radiance.as_dvec3());
+        }
+        let middles = Middles { emitted: emitted.map(rgb), reflected: direct.map(rgb) };
+        let direct = Image::from_fn(settings.size, |x, y| {
+            let ([red, green, blue, shows], light) = (direct.at(x, y), middles.emitted.at(x, y));
+            [red + light[0], green + light[1], blue + light[2], shows]
+        });
         progress(Progress { stage: "edges", done: 0.0 });
         let rays = DirectRays { seed: settings.seed.wrapping_add(1 << 33), ..rays };
-        let edges = EdgeSamples::new(&rays, &view, &sight, &direct, settings);
+        let edges = EdgeSamples::new(&rays, &view, &sight, &direct, middles, settings);
         let seen_through = Image::filled(settings.size, [0.0; 4]);
         Ok(Self { surfaces, traced: TracedLight { direct, seen_through }, bent: sight.bent, edges })
     }

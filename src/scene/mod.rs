@@ -77,6 +77,14 @@ impl Scene {
         build::scene(&Text { path, content }, &Files::Folder(folder.to_owned()))
     }
 
+    /// A scene from the text of a scene file that names no other files.
+    ///
+    /// # Errors
+    /// As [`load`](Self::load).
+    pub fn parse(content: &str) -> Result<Self> {
+        build::scene(&Text { path: Path::new("scene"), content }, &Files::Shipped(&[]))
+    }
+
     /// A scene that comes with the program, by one of [`Scene::shipped_names`].
     ///
     /// # Errors
@@ -184,6 +192,12 @@ impl Scene {
             texture.between(vertices.map(|vertex| vertex.coordinates[0]), shares)
         });
         material.scattering.times((colour * texel).clamp(Vec3::ZERO, Vec3::ONE))
+    }
+
+    /// Whether places are seen in a mirror or through glass anywhere.
+    #[must_use]
+    pub fn has_mirrors_or_glass(&self) -> bool {
+        self.materials.iter().any(|material| !matches!(material.scattering, Scattering::Lambert(_)))
     }
 
     /// Whether reflectances differ within a material, so that [`scattering`](Self::scattering) has to be

@@ -162,3 +162,56 @@ fn one_pixel_in_penumbra_is_right_in_the_mean() {
     let mean = (1..=24).map(of_seed).sum::<f64>() / 24.0;
     assert!((mean / known - 1.0).abs() < 0.02, "{mean} {known}");
 }
+
+/// More lamps than are looked at one by one, in three colours, with a board in the way of some.
+#[test]
+fn many_lamps_are_right_together() {
+    let gl = egl();
+    let lamps: Vec<String> = (0..100)
+        .map(|lamp| {
+            let (x, z) = (0.3 * f64::from(lamp % 10) - 1.35, 0.3 * f64::from(lamp / 10) - 1.35);
+            let [left, right, far, near] = [x - 0.05, x + 0.05, z - 0.05, z + 0.05];
+            format!(
+                "[lights.lamp{lamp}]\nradiance = [{}, {}, {}]\nquad = [[{left}, 3, {far}], [{right}, 3, {far}], \
+                 [{right}, 3, {near}], [{left}, 3, {near}]]\n",
+                200 * (lamp % 3),
+                100 * (1 + lamp % 2),
+                50 * (lamp % 5)
+            )
+        })
+        .collect();
+    let board = "[surfaces.board]\nmaterial = \"grey\"\n\
+                 quads = [[[-0.5, 1, -0.5], [0.5, 1, -0.5], [0.5, 1, 0.5], [-0.5, 1, 0.5]]]\n";
+    let scene = scene(&format!(
+        "
+[camera]
+position = [0, 0.9, 0]
+direction = [0, -1, 0]
+up = [0, 0, -1]
+vertical_fov_degrees = 100
+[materials]
+grey = {{ lambert = [0.5, 0.5, 0.5] }}
+[surfaces.floor]
+material = \"grey\"
+quads = [[[-5, 0, 5], [5, 0, 5], [5, 0, -5], [-5, 0, -5]]]
+{board}{}",
+        lamps.concat()
+    ));
+    let known = defined(&scene, 3);
+    let found = picture(&gl, &scene, &asked(DirectLight::Traced, 1)).direct;
+    let (by, most) = differences(&found, &known);
+    // As noisy as rays are left, two hundredths of the light.
+    assert!(by < 0.03 && most < 0.2, "{by} {most}");
+    // Each colour by itself: lamps of one colour are blocked where others are not.
+    for colour in [0, 2] {
+        let errors = found.values().iter().zip(known.values()).filter_map(|(found, known)| {
+            let known = known.as_ref()?[colour];
+            Some(((found[colour] - known).powi(2), known))
+        });
+        let (squares, sum, count) = errors.fold((0.0, 0.0, 0.0), |(squares, sum, count), (square, known)| {
+            (squares + f64::from(square), sum + f64::from(known), count + 1.0)
+        });
+        let rmse = (squares / count).sqrt() / (sum / count);
+        assert!(rmse < 0.04, "{colour}: {rmse}");
+    }
+}

@@ -150,6 +150,80 @@ fn changes_start_anew_what_they_change_and_a_refused_one_changes_nothing() {
     assert_eq!(live.read().unwrap(), fresh.read().unwrap());
 }
 
+/// Tables, with 2^13 photons a step and as many landings kept as given.
+fn keeping(scene: &Scene, landings_kept: u32) -> LiveSettings {
+    let mut settings = LiveSettings { landings_kept, ..settings(scene) };
+    settings.irradiance.estimate = Estimate::Tables;
+    settings
+}
+
+fn counts(live: &mut Live) -> Vec<u64> {
+    let pixels = (0..SIDE * SIDE).map(|place| UVec2::new(place % SIDE, place / SIDE));
+    pixels.map(|pixel| live.inspect(pixel).unwrap().photons).collect()
+}
+
+#[test]
+fn where_the_camera_moves_photons_are_kept() {
+    let gl = egl();
+    for name in ["cornell-boxes", "cornell-glass"] {
+        let scene = scene(name);
+        let settings = keeping(&scene, 1 << 20);
+        let mut moved = settings;
+        moved.camera.position += Vec3::new(40.0, 0.0, 0.0);
+        let mut live = after(&gl, &scene, settings, 5);
+        live.change(moved).unwrap();
+        assert_eq!((live.steps(), live.photons()), (0, 5 << 13));
+        live.step().unwrap();
+        assert_eq!((live.steps(), live.photons()), (1, 6 << 13));
+        // As if the camera had been there from the beginning.
+        let mut there = after(&gl, &scene, moved, 6);
+        assert_eq!(counts(&mut live), counts(&mut there), "{name}: the same photons, each once");
+        let [light, expected] = [&live, &there].map(|live| live.read_indirect().unwrap());
+        let share = rmse(&light, &expected) / mean(&expected);
+        // What is seen in glass is gathered when photons have doubled: of 4 steps there, and of 5 here.
+        let tolerance = if name == "cornell-boxes" { 1e-3 } else { 0.05 };
+        assert!(share < tolerance, "{name}: {share}");
+        let fresh =
+            after(&gl, &scene, LiveSettings { landings_kept: 0, ..moved }, 1).read_indirect().unwrap();
+        assert!(rmse(&fresh, &expected) > 2.0 * rmse(&light, &expected), "{name}: photons were of use");
+    }
+}
+
+#[test]
+fn kept_landings_are_the_latest_and_others_are_forgotten() {
+    let gl = egl();
+    let scene = scene("cornell-boxes");
+    let settings = keeping(&scene, 1 << 16);
+    let mut moved = settings;
+    moved.camera.position += Vec3::new(40.0, 0.0, 0.0);
+    let mut live = after(&gl, &scene, settings, 9);
+    assert_eq!(live.photons(), 9 << 13, "nothing is forgotten while the camera stands still");
+    live.change(moved).unwrap();
+    // A photon lands some times.
+    assert!((1 << 13..9 << 13).contains(&live.photons()), "{}", live.photons());
+    live.step().unwrap();
+    let light = mean(&live.read_indirect().unwrap());
+    let expected = mean(&after(&gl, &scene, moved, 9).read_indirect().unwrap());
+    assert!((light / expected - 1.0).abs() < 0.03, "{light} {expected}");
+
+    for other in [
+        LiveSettings { seed: 2, ..moved },
+        LiveSettings { bounces: Some(3), ..moved },
+        LiveSettings { landings_kept: 0, size: UVec2::new(40, 24), ..moved },
+    ] {
+        live.change(other).unwrap();
+        assert_eq!((live.steps(), live.photons()), (0, 0));
+        live.step().unwrap();
+        assert_eq!(live.read().unwrap(), after(&gl, &scene, other, 1).read().unwrap());
+    }
+    // A splat draws each photon: nothing is kept for it.
+    let mut splat = settings;
+    splat.irradiance.estimate = Estimate::Splat;
+    let mut live = after(&gl, &scene, splat, 2);
+    live.change(LiveSettings { camera: moved.camera, ..splat }).unwrap();
+    assert_eq!(live.photons(), 0);
+}
+
 #[test]
 fn a_pixel_says_why_its_radius_is_what_it_is() {
     let gl = egl();

@@ -2,10 +2,7 @@
 
 use serde::Serialize;
 use varikernel::Image;
-use varikernel_lab::LightError;
-
-/// Caustics are brighter than the median by this factor.
-const BRIGHTER: f32 = 3.0;
+use varikernel_lab::{LightError, caustic_and_walls};
 
 /// The errors of a picture in each region; none where the region is empty.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -14,9 +11,7 @@ pub(super) struct RegionErrors {
     pub(super) walls: Option<LightError>,
 }
 
-/// Pixels on diffuse surfaces, by the reference's indirect irradiance (green): caustics are where it is more
-/// than three times its median, walls are the rest. If the median is 0, as in the dark with a lit spot, there
-/// are no regions: both are empty.
+/// Pixels on diffuse surfaces, by the reference's indirect irradiance.
 #[derive(Clone, Debug)]
 pub(super) struct Regions {
     caustic: Vec<usize>,
@@ -27,18 +22,8 @@ impl Regions {
     /// For indirect irradiance that arrives at surfaces of some albedo, which is 0 where they are not
     /// diffuse.
     pub(super) fn new(albedo: &Image<[f32; 3]>, irradiance: &Image<[f32; 3]>) -> Self {
-        let albedo = albedo.values();
-        let mut diffuse: Vec<usize> =
-            (0..albedo.len()).filter(|&index| albedo[index].iter().any(|&colour| colour > 0.0)).collect();
-        let arrives = |index: usize| irradiance.values()[index][1];
-        let mut sorted: Vec<f32> = diffuse.iter().map(|&index| arrives(index)).collect();
-        sorted.sort_by(f32::total_cmp);
-        let limit = BRIGHTER * sorted.get(sorted.len() / 2).copied().unwrap_or(0.0);
-        if limit <= 0.0 {
-            return Self { caustic: Vec::new(), walls: Vec::new() };
-        }
-        let caustic = diffuse.extract_if(.., |&mut index| arrives(index) > limit).collect();
-        Self { caustic, walls: diffuse }
+        let [caustic, walls] = caustic_and_walls(albedo, irradiance);
+        Self { caustic, walls }
     }
 
     /// Pixels of the caustics, and of the walls.

@@ -2,6 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "in the helpers of tests too, a panic is the report")]
 
+mod against;
 mod bad_input;
 mod compare;
 mod devices;

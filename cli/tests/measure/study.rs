@@ -248,3 +248,32 @@ fn the_command_writes_a_page_a_table_and_everything() {
     study(&["-o", "study/study.csv"]).assert().code(2).stderr(contains("study.csv"));
     study(&["--device", "nothing"]).assert().code(2);
 }
+
+#[test]
+fn flicker_is_less_with_kept_photons_and_light_that_moves_leaves_a_ghost() {
+    let folder = tempfile::TempDir::new().unwrap();
+    let mut command = Command::cargo_bin("varikernel").unwrap();
+    let args = ["study", "--flicker", "--quick", "--device", "egl", "--json", "-o", "found"];
+    let output = command.current_dir(folder.path()).args(args).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let found: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let saved = std::fs::read(folder.path().join("found/flicker.json")).unwrap();
+    assert_eq!(serde_json::from_slice::<serde_json::Value>(&saved).unwrap(), found);
+    let rows = found["rows"].as_array().unwrap();
+    // Four ways, and the first with photons of four frames.
+    assert_eq!(rows.len(), 3 * 5);
+    for rows in rows.chunks(5) {
+        let of = |row: usize, field: &str| rows[row][field].as_f64().unwrap();
+        let moves = rows[0]["moves"].as_str().unwrap();
+        assert_eq!((&rows[0]["kept"], &rows[4]["kept"]), (&1.into(), &4.into()));
+        // Photons that are kept are the same in frames side by side.
+        assert!(of(4, "flicker") < 0.6 * of(0, "flicker"), "{moves}: {rows:?}");
+        assert!((0..5).all(|row| of(row, "flicker") > 0.0 && of(row, "flicker") < 1.0), "{rows:?}");
+        let ghost = of(4, "ghost");
+        assert!(if moves == "lamp" { ghost > 0.01 } else { ghost == 0.0 }, "{moves}: {ghost}");
+        assert!((0..4).all(|row| of(row, "ghost") == 0.0));
+        if moves != "lamp" {
+            assert!(of(4, "error") < of(0, "error"), "{moves}: {rows:?}");
+        }
+    }
+}

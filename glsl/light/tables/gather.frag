@@ -43,7 +43,8 @@ void main()
     vec4 wide = texelFetch(wide_shares, cell, 0);
     // That of radius 1 is pooled over so narrow a box that each pixel has its own.
     ivec4 around = box_at(pixel, extent, POOL);
-    float first = share_of(sum_of(fine_tests, around).r, around.zw - around.xy + 1, share_of_noise());
+    uint sum = sum_of(fine_tests, around).r;
+    float first = share_of(sum, around.zw - around.xy + 1, share_of_noise(), 1);
     float shares[7] = float[7](first, narrow.x, narrow.y, narrow.z, narrow.w, wide.x, wide.y);
     // The widest radius that all tests up to it allow, then mixed with the next ones as far as they go.
     int known = 0;

@@ -29,16 +29,6 @@ Held held_in(ivec4 box)
     return held_by(sum_of(flux_table, box), sum_of(area_table, box).r);
 }
 
-// What the square of the difference over its variance is in the mean where both boxes are equally wrong: 1 by
-// noise, and the bias of the wider one, which grows with the square of the radius, so that the difference to
-// the narrower one is known from its own. The rule of Rousselle, Knaus and Zwicker 2011.
-float threshold(float fine, float coarse)
-{
-    float a = (fine + 0.5) * (fine + 0.5);
-    float b = (coarse + 0.5) * (coarse + 0.5);
-    return 1.0 + (b - a) / (b + a);
-}
-
 // The square of the difference of light over what noise alone would make of it, over its threshold: less than
 // 1 where the wider box is better, and 0 where it holds nothing.
 float ratio(Held fine, Held coarse, float limit)

@@ -26,7 +26,7 @@ void main()
             box = ivec4((box.xy + 1) >> 1, box.zw >> 1);
             sum = sum_of(coarse_tests, box)[level - 3];
         }
-        share = min(share, share_of(sum, box.zw - box.xy + 1, noise));
+        share = min(share, share_of(sum, box.zw - box.xy + 1, noise, 1 << level));
         shares[level - 1] = share;
     }
     narrow = vec4(shares[0], shares[1], shares[2], shares[3]);

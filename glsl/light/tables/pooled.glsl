@@ -9,6 +9,8 @@ const float SOFT = 0.4;
 // Tests are pooled over boxes that are so many times as wide.
 const int POOL = 2;
 const float NOISE_FLOOR = 0.75;
+// So many tests that find noise alone are pooled with those of a box: at the ends of faces it holds few.
+const float SUPPOSED = 2.0;
 
 // The picture's noise over that of photons that fall by chance: less where they are emitted evenly, and seen
 // in what differs between narrow boxes. Where light itself changes at once it is as by chance, and never less
@@ -21,9 +23,11 @@ float share_of_noise()
     return weights > 0.0 ? clamp(found / weights, NOISE_FLOOR, 1.0) : 1.0;
 }
 
-// From 0 to 1, from a sum of ratios of so many tests.
-float share_of(uint ratios, ivec2 sides, float noise)
+// From 0 to 1, from a sum of ratios of so many tests of boxes of a radius.
+float share_of(uint ratios, ivec2 sides, float noise, int radius)
 {
-    float ratio = float(ratios) / (8192.0 * float(sides.x * sides.y)) / noise;
+    float expected = 1.0 / threshold(float(radius / 2), float(radius));
+    float sum = float(ratios) / 8192.0 / noise + SUPPOSED * expected;
+    float ratio = sum / (float(sides.x * sides.y) + SUPPOSED);
     return clamp((1.0 + SOFT - ratio) / (2.0 * SOFT), 0.0, 1.0);
 }

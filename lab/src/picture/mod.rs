@@ -1,10 +1,13 @@
 //! How far a picture is from its reference: by light, and as it is perceived.
 
+mod caustic;
 mod filter;
 mod flip;
 #[cfg(test)]
 mod samples;
 mod ssim;
+
+pub use caustic::caustic_and_walls;
 
 use varikernel::image::{Image, ToneMap};
 

@@ -10,7 +10,7 @@ use exr::meta::magic_number;
 use super::counts::Problem;
 
 #[cfg(feature = "scene")]
-pub(super) use read::read_rgb;
+pub(super) use read::read_channels;
 pub(super) use read::{read, read_mask};
 pub(super) use write::write;
 #[cfg(feature = "scene")]

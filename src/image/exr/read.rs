@@ -118,29 +118,39 @@ pub(in crate::image) fn read_mask(
     })
 }
 
-/// Reads `R`, `G` and `B` of the first layer that has them.
+/// Reads channels by their names, with or without that of their layer, from the first layer that has them all.
 #[cfg(feature = "scene")]
-pub(in crate::image) fn read_rgb(
+pub(in crate::image) fn read_channels<const COUNT: usize>(
     file: impl BufRead + Seek,
     length: u64,
+    named: [&str; COUNT],
     options: &ReadOptions<'_>,
-) -> Result<Image<[f32; 3]>, Problem> {
+) -> Result<Image<[f32; COUNT]>, Problem> {
     let reader = open(file, length, options)?;
-    let rgb = |header: &Header| -> Option<Vec<usize>> {
-        let channels = &header.channels.list;
-        ["R", "G", "B"].iter().map(|&name| channels.iter().position(|one| one.name == *name)).collect()
+    let all = names(reader.headers());
+    let of_layer = |layer: usize| -> Option<Chosen> {
+        let of = |name: &&str| {
+            let found = all.iter().find(|(short, full, (of, _))| {
+                *of == layer && (short.as_str() == *name || full.as_str() == *name)
+            });
+            found.map(|&(_, _, (_, channel))| channel)
+        };
+        Some(Chosen { layer, channels: named.iter().map(of).collect::<Option<_>>()? })
     };
-    let mut layers = reader.headers().iter().enumerate();
-    let chosen = layers.find_map(|(layer, header)| Some(Chosen { layer, channels: rgb(header)? }));
-    let chosen = chosen.ok_or_else(|| {
-        let names: Vec<_> = names(reader.headers()).into_iter().map(|(_, full, _)| full).collect();
-        let problem = format!("no channels R, G and B, but {}", names.join(", "));
-        Problem::new(problem, "give a picture, or name its channels R, G and B")
+    let chosen = (0..reader.headers().len()).find_map(of_layer).ok_or_else(|| {
+        let have: Vec<_> = all.iter().map(|(_, full, _)| full.as_str()).collect();
+        let and = |names: &[&str]| match names {
+            [first @ .., last] if !first.is_empty() => format!("{} and {last}", first.join(", ")),
+            _ => names.concat(),
+        };
+        let (noun, wanted) = (if COUNT == 1 { "channel" } else { "channels" }, and(&named));
+        let problem = format!("no {noun} {wanted}, but {}", have.join(", "));
+        Problem::new(problem, format!("give a picture that has them, or name its {noun} {wanted}"))
     })?;
     let header = &reader.headers()[chosen.layer];
     let compression = header.compression;
     chosen.sample_types(header).try_for_each(|one| super::packed::check_decodable(compression, one))?;
-    let mut picture = Image::filled(size_of(header, options)?, [0.0; 3]);
+    let mut picture = Image::filled(size_of(header, options)?, [0.0; COUNT]);
     for_each_sample(reader, &chosen, |channel, index, value| {
         #[expect(clippy::cast_precision_loss, reason = "radiance; whole numbers of that size are none")]
         let value = match value {

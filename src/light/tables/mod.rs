@@ -52,6 +52,8 @@ const BRIGHTEST: u32 = 256;
 const BOX: (&str, &str) = glsl!("light/tables/box.glsl");
 /// Shares of widths.
 const POOLED: (&str, &str) = glsl!("light/tables/pooled.glsl");
+/// What a test is held against.
+const THRESHOLD: (&str, &str) = glsl!("light/tables/threshold.glsl");
 /// Rounding by chance.
 const DITHER: (&str, &str) = glsl!("light/tables/dither.glsl");
 
@@ -293,7 +295,7 @@ fn sources() -> [ShaderSource; 7] {
             .vertex_file(glsl!("light/tables/lit_tiles.vert"))
             .file(BOX)
     };
-    let test = |label, step| lit(four(label), step).file(glsl!("light/tables/noise.glsl"));
+    let test = |label, step| lit(four(label), step).file(THRESHOLD).file(glsl!("light/tables/noise.glsl"));
     let of_light = |label, formats: &[TextureFormat]| ShaderSource::new(label).targets(formats.to_vec());
     let in_steps = |source: ShaderSource| {
         source
@@ -307,11 +309,13 @@ fn sources() -> [ShaderSource; 7] {
         test(TEST_FINE, 1).file(DITHER).file(glsl!("light/tables/test_fine.frag")),
         test(TEST_COARSE, 2).file(glsl!("light/tables/test_coarse.frag")),
         lit(of_light(POOL, &[TextureFormat::Rgba32Float; 2]), 2)
+            .file(THRESHOLD)
             .file(POOLED)
             .file(glsl!("light/tables/pool.frag")),
         in_steps(lit(of_light(GATHER, &[TextureFormat::Rgba32Float, TextureFormat::Rgba32Uint]), 1))
             .define("WIDEST", TablesStage::WIDEST)
             .file(DITHER)
+            .file(THRESHOLD)
             .file(POOLED)
             .file(glsl!("light/tables/gather.frag")),
         in_steps(lit(of_light(SMOOTH, &[TextureFormat::Rgba32Float]), 1))

@@ -22,6 +22,8 @@ const MOST: f64 = 6.0;
 const SOFT: f64 = 0.4;
 /// The least that the picture's noise counts as, of that of photons that fall by chance.
 const NOISE_FLOOR: f64 = 0.75;
+/// So many tests that find noise alone are pooled with those of a box: at the ends of faces it holds few.
+const SUPPOSED: f64 = 2.0;
 /// Tests are pooled over boxes so many times as wide.
 const POOL: u32 = 2;
 /// The widest box that light is smoothed over, by its radius in pixels.
@@ -209,7 +211,7 @@ impl Tables {
     /// pixel of every second row.
     fn shares(&self, ratios: &[Table], noise: f64) -> Image<[f64; 7]> {
         let share = |x, y, level| {
-            let ratio = self.pooled(x, y, level, &ratios[level - 1]) / noise;
+            let ratio = self.pooled(x, y, level, &ratios[level - 1], noise);
             ((1.0 + SOFT - ratio) / (2.0 * SOFT)).clamp(0.0, 1.0)
         };
         let size = self.areas.size().map(|side| side.div_ceil(2));
@@ -267,13 +269,13 @@ impl Tables {
     }
 
     /// The mean ratio of a level around a pixel, of an even column and row where tests are at every second.
-    fn pooled(&self, x: u32, y: u32, level: usize, ratios: &Table) -> f64 {
+    fn pooled(&self, x: u32, y: u32, level: usize, ratios: &Table, noise: f64) -> f64 {
         let step = step_of(level);
         let Inside { lo, hi } = self.box_at(x, y, POOL * RADII[level]);
         let places = Inside { lo: lo.map(|first| first.div_ceil(step)), hi: hi / step };
         #[expect(clippy::cast_precision_loss, reason = "less than 2^32")]
-        let mean = ratios.count(places) as f64 * RATIO_UNIT / places.area() as f64;
-        mean
+        let [sum, count] = [ratios.count(places) as f64 * RATIO_UNIT / noise, places.area() as f64];
+        (sum + SUPPOSED / threshold(level)) / (count + SUPPOSED)
     }
 
     /// The box of a radius, as far as the pixel's face goes along its row and column.

@@ -17,31 +17,43 @@ const CONTRAST: f32 = 0.1;
 const SHADOW: f32 = 0.25;
 const SHADOW_OF_USUAL: f32 = 0.1;
 
+/// Direct light that differs by so many times the usual one is a lamp and what is beside it.
+const LAMP: f32 = 4.0;
+
 /// Right, and the next row: with those before, all four neighbours.
 const WAYS: [IVec2; 2] = [IVec2::X, IVec2::Y];
+/// Those at corners, where lamps alone are so bright that the corner of a pixel counts.
+const CORNERS: [IVec2; 2] = [IVec2::ONE, IVec2::new(-1, 1)];
 
 /// The pixels at edges, in their order, by what each meets first, what is `bent` there, and the direct light at
-/// its middle.
-pub(super) fn edges(firsts: &[First], bent: &Neighbours<'_>, direct: &Image<[f32; 4]>) -> Vec<u32> {
+/// its middle, which is [`usual`] in the picture.
+pub(super) fn edges(
+    firsts: &[First],
+    bent: &Neighbours<'_>,
+    direct: &Image<[f32; 4]>,
+    usual: f32,
+) -> Vec<u32> {
     let size = direct.size();
-    let least = SHADOW_OF_USUAL * usual(direct);
+    let least = SHADOW_OF_USUAL * usual;
     let differ = |pixel: u32, other: u32| {
         !share_a_face(&firsts[pixel as usize], &firsts[other as usize])
             || in_contrast(of(direct, pixel), of(direct, other), least)
             || show_differs(bent, pixel, other)
     };
+    let is_lamps_edge =
+        |pixel: u32, other: u32| in_contrast(of(direct, pixel), of(direct, other), LAMP * usual);
     let mut is_edge = vec![false; size.element_product() as usize];
     for pixel in 0..size.element_product() {
-        for way in WAYS {
-            let at = UVec2::new(pixel % size.x, pixel / size.x).as_ivec2() + way;
-            let other = at.as_uvec2();
-            if other.cmplt(size).all() {
-                let other = other.y * size.x + other.x;
-                if differ(pixel, other) {
-                    is_edge[pixel as usize] = true;
-                    is_edge[other as usize] = true;
-                }
-            }
+        let beside = |way: &IVec2| {
+            let at = UVec2::new(pixel % size.x, pixel / size.x).as_ivec2() + *way;
+            let is_inside = at.cmpge(IVec2::ZERO).all() && at.cmplt(size.as_ivec2()).all();
+            is_inside.then(|| at.as_uvec2().y * size.x + at.as_uvec2().x)
+        };
+        let others = WAYS.iter().filter_map(beside).filter(|&other| differ(pixel, other));
+        let corners = CORNERS.iter().filter_map(beside).filter(|&other| is_lamps_edge(pixel, other));
+        for other in others.chain(corners) {
+            is_edge[pixel as usize] = true;
+            is_edge[other as usize] = true;
         }
     }
     (0..).zip(is_edge).filter_map(|(pixel, is_edge)| is_edge.then_some(pixel)).collect()
@@ -66,7 +78,7 @@ fn share_a_face(first: &First, other: &First) -> bool {
 }
 
 /// The median of direct light over the pixels that show a lit surface straight: lamps are far brighter.
-fn usual(direct: &Image<[f32; 4]>) -> f32 {
+pub(super) fn usual(direct: &Image<[f32; 4]>) -> f32 {
     let lit = direct.values().iter().filter(|light| light[3] > 0.0);
     let mut values: Vec<f32> = lit.map(|light| light[0].max(light[1]).max(light[2])).collect();
     values.retain(|&value| value > 0.0);

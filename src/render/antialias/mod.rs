@@ -6,10 +6,12 @@
 //! - What they meet has direct light of its own, by a few shadow rays each. Light by photons is that of the
 //!   nearest pixel's middle on the same surface, or one that faces the same way; in mirrors and behind glass
 //!   that of the nearest place that a pixel shows there. Where there is none, it is gathered anew.
+//! - Lamps that are seen get more rays, until their edges are smooth.
 //! - Density, radii, irradiance, normals, depth and albedo stay those of pixels' middles.
 //! - Cost: at edges, as many rays as samples, and [`RAYS`] shadow rays for each.
 
 mod edges;
+mod emitted;
 mod reconstruction;
 
 use std::f32::consts::PI;
@@ -24,8 +26,9 @@ use super::sight::{Place, Sight};
 use crate::image::Image;
 use crate::settings::{PictureSettings, PixelFilter};
 use crate::view::View;
-use edges::edges;
-use reconstruction::reconstruction;
+use edges::{edges, usual};
+use emitted::emitted;
+use reconstruction::{PixelSamples, reconstruction};
 
 /// Shadow rays of a sample to each light.
 const RAYS: u32 = 4;
@@ -60,18 +63,28 @@ struct Way {
 struct Sample {
     /// From its corner, in pixels.
     at: DVec2,
-    /// Radiance of direct light.
-    direct: Vec3,
+    /// Radiance of direct light that is reflected.
+    reflected: Vec3,
     ways: Vec<Way>,
+}
+
+/// Direct light at the middles of pixels, in its parts.
+#[derive(Debug)]
+pub(super) struct Middles {
+    /// What shines by itself.
+    pub(super) emitted: Image<[f32; 3]>,
+    pub(super) reflected: Image<[f32; 3]>,
 }
 
 /// What the pixels at edges show.
 #[derive(Debug)]
 pub(super) struct EdgeSamples {
+    middles: Middles,
     pixels: Vec<u32>,
-    /// Those of a pixel are side by side.
+    /// As many for each pixel.
     samples: Vec<Sample>,
     each: usize,
+    emitted: PixelSamples,
     places: Vec<Place>,
 }
 
@@ -82,31 +95,43 @@ impl EdgeSamples {
         view: &View,
         sight: &Sight,
         direct: &Image<[f32; 4]>,
+        middles: Middles,
         settings: &PictureSettings,
     ) -> Self {
         let each = settings.antialias;
+        let mut all = Self {
+            middles,
+            pixels: Vec::new(),
+            samples: Vec::new(),
+            each: each as usize,
+            emitted: PixelSamples::default(),
+            places: Vec::new(),
+        };
         if each == 1 {
-            return Self { pixels: Vec::new(), samples: Vec::new(), each: 1, places: Vec::new() };
+            return all;
         }
         let shown = Shown {
             view,
+            emitted: &all.middles.emitted,
             straight: Neighbours::new(settings.size, &sight.straight),
             bent: Neighbours::new(settings.size, &sight.bent),
+            usual: usual(direct),
         };
-        let pixels = edges(&sight.firsts, &shown.bent, direct);
+        let pixels = edges(&sight.firsts, &shown.bent, direct, shown.usual);
         let of_pixel = |&pixel: &u32| shown.look_around(rays, pixel, each);
-        let found: Vec<(Vec<Sample>, Vec<Place>)> = pixels.par_iter().map(of_pixel).collect();
-        let (mut samples, mut places) = (Vec::new(), Vec::new());
-        for (mut of_pixel, own) in found {
-            for way in of_pixel.iter_mut().flat_map(|sample| &mut sample.ways) {
+        let found: Vec<Around> = pixels.par_iter().map(of_pixel).collect();
+        all.pixels = pixels;
+        for Around { mut samples, emitted, own } in found {
+            for way in samples.iter_mut().flat_map(|sample| &mut sample.ways) {
                 if let Source::Own(index) = &mut way.source {
-                    *index += places.len();
+                    *index += all.places.len();
                 }
             }
-            samples.extend(of_pixel);
-            places.extend(own);
+            all.samples.extend(samples);
+            all.emitted.push(emitted);
+            all.places.extend(own);
         }
-        Self { pixels, samples, each: each as usize, places }
+        all
     }
 
     /// Places that no pixel's middle shows, nor one near to it; in the order of their pixels.
@@ -136,19 +161,27 @@ impl EdgeSamples {
             };
             way.share * irradiance / PI
         };
-        let samples: Vec<(DVec2, [Vec3; 2])> = self
-            .samples
-            .par_iter()
-            .map(|sample| (sample.at, [sample.direct, sample.ways.iter().map(light).sum()]))
-            .collect();
-        let middles = [&layers.direct, &layers.indirect];
-        [layers.direct, layers.indirect] = reconstruction(filter, middles, &self.pixels, &samples, self.each);
-        layers.beauty = Image::from_fn(layers.direct.size(), |x, y| {
-            let [direct, indirect] =
-                [&layers.direct, &layers.indirect].map(|light| Vec3::from_array(light.at(x, y)));
-            (direct + indirect).to_array()
-        });
+        let samples = |of: &(dyn Fn(&Sample) -> Vec3 + Sync)| {
+            let values = self.samples.par_iter().map(|sample| (sample.at, of(sample))).collect();
+            PixelSamples::of_as_many(self.each, values)
+        };
+        let reflected = samples(&|sample| sample.reflected);
+        let indirect = samples(&|sample| sample.ways.iter().map(light).sum());
+        let [emitted, reflected, indirect] = [
+            (&self.middles.emitted, &self.emitted),
+            (&self.middles.reflected, &reflected),
+            (&layers.indirect, &indirect),
+        ]
+        .map(|(middles, samples)| reconstruction(filter, middles, &self.pixels, samples));
+        layers.direct = sum(&reflected, &emitted);
+        layers.indirect = indirect;
+        layers.beauty = sum(&layers.direct, &layers.indirect);
     }
+}
+
+fn sum(image: &Image<[f32; 3]>, other: &Image<[f32; 3]>) -> Image<[f32; 3]> {
+    let sum = |x, y| (Vec3::from_array(image.at(x, y)) + Vec3::from_array(other.at(x, y))).to_array();
+    Image::from_fn(image.size(), sum)
 }
 
 /// What the middles of pixels show.
@@ -156,24 +189,41 @@ struct Shown<'a> {
     view: &'a View,
     straight: Neighbours<'a>,
     bent: Neighbours<'a>,
+    /// What they emit.
+    emitted: &'a Image<[f32; 3]>,
+    /// The picture's usual direct light.
+    usual: f32,
+}
+
+/// What is seen around the middle of a pixel.
+struct Around {
+    samples: Vec<Sample>,
+    emitted: Vec<(DVec2, Vec3)>,
+    /// Places of samples' own.
+    own: Vec<Place>,
 }
 
 impl Shown<'_> {
-    /// The samples of a pixel, and places of their own.
-    fn look_around(&self, rays: &DirectRays<'_>, pixel: u32, count: u32) -> (Vec<Sample>, Vec<Place>) {
+    fn look_around(&self, rays: &DirectRays<'_>, pixel: u32, count: u32) -> Around {
         let columns = self.view.size().x;
         let corner = UVec2::new(pixel % columns, pixel / columns).as_dvec2();
         let spread = Samples::new(rays.seed, pixel, u32::MAX);
-        let mut own = Vec::new();
-        let sample = |number: u32| {
+        let look = |number: u32| {
             let at = DVec2::from_array(spread.at(number));
             let mut seen = Sight::default();
             seen.look(rays.scene, pixel, &self.view.ray_at(corner + at));
-            let mut direct: Vec3 = seen.lights.iter().map(|&(_, radiance)| radiance).sum();
+            (at, seen)
+        };
+        let shines = |seen: &Sight| seen.lights.iter().map(|&(_, radiance)| radiance).sum::<Vec3>();
+        let (mut samples, mut lights, mut own) = (Vec::new(), Vec::new(), Vec::new());
+        for number in 0..count {
+            let (at, seen) = look(number);
+            lights.push((at, shines(&seen)));
+            let mut reflected = Vec3::ZERO;
             for (index, place) in (0..).zip(seen.straight.iter().chain(&seen.bent)) {
                 // All samples of a pixel together are spread evenly over lights, too.
                 let key = pixel.wrapping_mul(100).wrapping_add(index);
-                direct += rays.radiance(key, place, RAYS * number..RAYS * (number + 1)).as_vec3();
+                reflected += rays.radiance(key, place, RAYS * number..RAYS * (number + 1)).as_vec3();
             }
             let mut ways = Vec::new();
             let straight = seen.straight.iter().map(|place| (place, self.of_straight(place)));
@@ -185,10 +235,23 @@ impl Shown<'_> {
                 });
                 ways.push(Way { share: place.share, source });
             }
-            Sample { at, direct, ways }
+            samples.push(Sample { at, reflected, ways });
+        }
+        let more = |number: u32| {
+            let (at, seen) = look(number);
+            (at, shines(&seen))
         };
-        let samples = (0..count).map(sample).collect();
-        (samples, own)
+        let emitted = emitted(lights, more, self.brightest_beside(pixel), self.usual);
+        Around { samples, emitted, own }
+    }
+
+    /// The brightest that the middles of a pixel and of those around it emit.
+    fn brightest_beside(&self, pixel: u32) -> f32 {
+        let size = self.emitted.size().as_ivec2();
+        let home = UVec2::new(pixel % self.emitted.size().x, pixel / self.emitted.size().x).as_ivec2();
+        let inside = |at: &IVec2| at.cmpge(IVec2::ZERO).all() && at.cmplt(size).all();
+        let around = square(1).map(|away| home + away).filter(inside).map(IVec2::as_uvec2);
+        around.map(|at| Vec3::from_array(self.emitted.at(at.x, at.y)).max_element()).fold(0.0, f32::max)
     }
 
     /// The pixel whose middle is nearest on the same surface; or else on one that faces about the same way.

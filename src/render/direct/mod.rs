@@ -7,11 +7,13 @@
 //!   the places around are looked at in the same way, until no more are found.
 //! - Places on a light are spread evenly by its power; glass casts a hard shadow, since photons bring the
 //!   light that passes it.
+//! - Where many lights shine, those that bring the most get rays one by one, and the others together.
 //! - A light with a texture or many triangles has no closed form: its samples say how bright it is, and it
 //!   gets as many rays as penumbras do.
 
 mod samples;
 mod shadow_rays;
+mod shining;
 
 pub(super) use samples::Samples;
 pub(super) use shadow_rays::{Receiver, ShadowRays};
@@ -25,7 +27,8 @@ use rayon::prelude::*;
 use super::neighbours::Neighbours;
 use super::rings::mean;
 use super::sight::Place;
-use crate::scene::{Light, Scene};
+use crate::scene::Scene;
+use shining::{Source, shining};
 
 /// Rays of each place to each light, at first.
 const FIRST: u32 = 4;
@@ -69,11 +72,12 @@ struct Seen {
 }
 
 impl Seen {
-    fn add(&mut self, number: u32, light: &Light, rays: &ShadowRays, unblocked: Option<DVec3>) {
+    fn add(&mut self, source: &Source<'_>, rays: &ShadowRays) {
+        let unblocked = source.unblocked();
         let irradiance = rays.irradiance(unblocked);
         self.irradiance += irradiance;
         self.unblocked += unblocked.unwrap_or(irradiance);
-        if !light.is_point() {
+        if !source.is_point() {
             let kind = if rays.is_mixed() || unblocked.is_none() {
                 &mut self.open
             } else if rays.sees_all() {
@@ -81,7 +85,7 @@ impl Seen {
             } else {
                 &mut self.dark
             };
-            *kind |= 1 << (number % 64);
+            *kind |= source.bit();
         }
     }
 }
@@ -128,20 +132,11 @@ impl DirectRays<'_> {
             return DVec3::ZERO;
         }
         let receiver = Receiver::new(self.scene, place.position, place.normal);
-        let of = |(light_number, light, unblocked): (u32, &Light, Option<DVec3>)| {
-            self.rays(number, light_number, light, &receiver, samples.clone()).irradiance(unblocked)
+        let of = |source: Source<'_>| {
+            self.rays(number, &source, &receiver, samples.clone()).irradiance(source.unblocked())
         };
-        place.share.as_dvec3() * self.shining(place).map(of).sum::<DVec3>() / PI
-    }
-
-    /// Lights that would shine on a place if nothing were between, by their numbers, with the irradiance if it
-    /// has a closed form.
-    fn shining<'a>(&'a self, place: &'a Place) -> impl Iterator<Item = (u32, &'a Light, Option<DVec3>)> {
-        let of = |(number, light): (u32, &'a Light)| {
-            let unblocked = light.irradiance(place.position, place.normal);
-            (unblocked != Some(DVec3::ZERO)).then_some((number, light, unblocked))
-        };
-        (0..).zip(self.scene.lights()).filter_map(of)
+        let sources = shining(self.scene, place.position, place.normal);
+        place.share.as_dvec3() * sources.into_iter().map(of).sum::<DVec3>() / PI
     }
 
     /// What a place sees by its first rays.
@@ -152,7 +147,9 @@ impl DirectRays<'_> {
 
     /// The same with more rays to the lights that are open.
     fn refined(&self, index: u32, place: &Place, first: &Seen, open: u64) -> Seen {
-        let enough = TOLERANCE * mean(first.irradiance).max(DARK * mean(first.unblocked));
+        // The errors of several lights add up as those of chance do.
+        let share = TOLERANCE / f64::from(open.count_ones().max(1)).sqrt();
+        let enough = share * mean(first.irradiance).max(DARK * mean(first.unblocked));
         self.look(index, place, open, enough)
     }
 
@@ -161,50 +158,45 @@ impl DirectRays<'_> {
     fn look(&self, index: u32, place: &Place, open: u64, enough: f64) -> Seen {
         let receiver = Receiver::new(self.scene, place.position, place.normal);
         let mut seen = Seen::default();
-        for (number, light, unblocked) in self.shining(place) {
-            let is_open = open >> (number % 64) & 1 == 1 && !light.is_point();
+        for source in shining(self.scene, place.position, place.normal) {
+            let is_open = open & source.bit() != 0 && !source.is_point();
             let first = if is_open { self.samples } else { FIRST.min(self.samples) };
-            let mut rays = self.rays(index, number, light, &receiver, 0..first);
+            let mut rays = self.rays(index, &source, &receiver, 0..first);
             for doubling in 1..=if is_open { MOST_DOUBLINGS } else { 0 } {
-                if rays.error(unblocked) <= enough {
+                if rays.error(source.unblocked()) <= enough {
                     break;
                 }
                 let [from, to] = [doubling - 1, doubling]
                     .map(|doublings| self.samples.saturating_mul(1 << doublings).min(samples::MOST));
-                rays.take(self.scene, light, &receiver, self.samples_of(index, number), from..to);
+                let spread = self.samples_of(index, &source);
+                rays.take(spread, from..to, |uv| source.sample(self.scene, &receiver, uv));
             }
-            seen.add(number, light, &rays, unblocked);
+            seen.add(&source, &rays);
         }
         seen
     }
 
-    fn rays(
-        &self,
-        index: u32,
-        number: u32,
-        light: &Light,
-        receiver: &Receiver,
-        samples: Range<u32>,
-    ) -> ShadowRays {
+    fn rays(&self, index: u32, source: &Source<'_>, receiver: &Receiver, samples: Range<u32>) -> ShadowRays {
         let mut rays = ShadowRays::default();
-        let spread = self.samples_of(index, number);
-        if light.is_point() {
-            rays.take(self.scene, light, receiver, spread, 0..1);
+        let spread = self.samples_of(index, source);
+        let sample = |uv| source.sample(self.scene, receiver, uv);
+        if source.is_point() {
+            rays.take(spread, 0..1, sample);
             return rays;
         }
-        rays.take(self.scene, light, receiver, spread, samples);
+        rays.take(spread, samples, sample);
         // Of a light that is mostly behind the place, those before do not count.
         for more in LAST_RESORT {
             if !rays.met_nothing() {
                 break;
             }
-            rays.take(self.scene, light, receiver, spread, more);
+            rays.take(spread, more, sample);
         }
         rays
     }
 
-    fn samples_of(&self, index: u32, number: u32) -> Samples {
-        Samples::new(self.seed, index, number)
+    fn samples_of(&self, index: u32, source: &Source<'_>) -> Samples {
+        Samples::new(self.seed, index, source.number())
     }
 }
 

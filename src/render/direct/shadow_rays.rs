@@ -60,18 +60,16 @@ pub(in crate::render) struct ShadowRays {
 }
 
 impl ShadowRays {
-    /// Takes the samples of some numbers, all new ones.
+    /// Takes the samples of some numbers, all new ones; `sample` is as [`Receiver::sample`].
     pub(in crate::render) fn take(
         &mut self,
-        scene: &Scene,
-        light: &Light,
-        receiver: &Receiver,
         samples: Samples,
         numbers: Range<u32>,
+        sample: impl Fn([f64; 2]) -> Option<(DVec3, bool)>,
     ) {
         self.taken += numbers.end - numbers.start;
         for index in numbers {
-            if let Some((arrives, is_seen)) = receiver.sample(scene, light, samples.at(index)) {
+            if let Some((arrives, is_seen)) = sample(samples.at(index)) {
                 let square = mean(arrives).powi(2);
                 self.cast += 1;
                 self.of_all += arrives;
@@ -92,7 +90,8 @@ impl ShadowRays {
         match unblocked {
             // Less of the light is above the horizon than any sample met.
             Some(_) if self.cast == 0 => DVec3::ZERO,
-            Some(whole) => whole * (self.of_seen.element_sum() / self.of_all.element_sum()),
+            // By colour: lights that are looked at together may have other colours.
+            Some(whole) => whole * (self.of_seen / self.of_all.max(DVec3::splat(f64::MIN_POSITIVE))),
             None => self.of_seen / f64::from(self.taken.max(1)),
         }
     }

@@ -5,9 +5,13 @@
 //! with these; direct light gets some more shadow rays. So a step costs the same however long the picture has
 //! been getting better. With n as it is, kernels shrink as photons come: the picture sharpens, at a noise
 //! that n decides (see [`irradiance`](crate::light::irradiance)).
+//!
+//! Where the camera moves, the photons of the latest steps are counted again, as the new view sees them: the
+//! scene has not changed, and they are as good as new ones ([`LiveSettings::landings_kept`]).
 
 mod direct;
 mod inspection;
+mod kept;
 mod settings;
 mod through;
 
@@ -32,6 +36,7 @@ use crate::render::surfaces::SurfaceStage;
 use crate::scene::Scene;
 use direct::ProgressiveDirect;
 use inspection::Inspector;
+use kept::Kept;
 use through::ProgressiveThrough;
 
 /// A photon's power is multiplied with the number of photons of its step over this, so that steps of any
@@ -50,9 +55,14 @@ pub struct Live {
     points: PhotonPoints,
     shade: ShadeStage,
     inspector: Inspector,
+    kept: Kept,
+    /// Whether what is kept is not counted yet.
+    recounts: bool,
     /// Photons that left the lights.
     emitted: u64,
     steps: u32,
+    /// Steps with this seed: those after a move go on with other photons.
+    traced: u32,
     times: Vec<(&'static str, Duration)>,
 }
 
@@ -70,7 +80,8 @@ impl Shown {
         let mut surfaces = stage.draw(scene, view)?;
         let sight = Sight::new(scene, &view, false);
         sight.paint(&mut surfaces)?;
-        let through = ProgressiveThrough::new(view, sight.bent.clone());
+        let keeps = settings.keeps_landings() && scene.has_mirrors_or_glass();
+        let through = ProgressiveThrough::new(view, sight.bent.clone(), keeps);
         Ok(Self { surfaces, direct: ProgressiveDirect::new(settings.size, sight, settings.seed), through })
     }
 }
@@ -93,16 +104,20 @@ impl Live {
             points: PhotonPoints::new(gl),
             shade: ShadeStage::new(gl, settings.size)?,
             inspector: Inspector::default(),
+            kept: Kept::default(),
+            recounts: false,
             emitted: 0,
             steps: 0,
+            traced: 0,
             times: Vec::new(),
             scene,
             settings,
         })
     }
 
-    /// Goes on with other settings: keeps what they do not change, and starts the rest anew. The number of
-    /// photons and of shadow rays of a step changes nothing that is there.
+    /// Goes on with other settings: keeps what they do not change, and starts the rest anew, but for the
+    /// landings that are kept. The number of photons and of shadow rays of a step changes nothing that is
+    /// there.
     ///
     /// # Errors
     /// As [`new`](Self::new); everything stays as it was then.
@@ -122,15 +137,27 @@ impl Live {
             self.pipeline.change(settings.irradiance)?;
         }
         self.settings = settings;
-        if moved || redrawn || settings.bounces != old.bounces {
-            self.emitted = 0;
+        let retraced = (settings.bounces, settings.seed) != (old.bounces, old.seed);
+        let goes_on = settings.keeps_landings() && !retraced;
+        if let Some(mut shown) = shown {
+            if goes_on {
+                shown.through.take_photons(&mut self.shown.through);
+            }
+            self.shown = shown;
+        }
+        if moved || redrawn || retraced {
+            if goes_on {
+                self.shown.through.gather_again();
+            } else {
+                self.kept.clear();
+                self.traced = 0;
+                self.shown.through.clear();
+            }
+            self.emitted = self.kept.emitted();
+            self.recounts = self.emitted > 0;
             self.steps = 0;
             self.pipeline.clear();
-            self.shown.through.clear();
             self.inspector.forget();
-        }
-        if let Some(shown) = shown {
-            self.shown = shown;
         }
         if let Some(shade) = shade {
             self.shade = shade;
@@ -145,7 +172,7 @@ impl Live {
     /// [`Error::Inexact`](crate::Error::Inexact) where a pixel has more photons than can be counted;
     /// [`Error::Gl`](crate::Error::Gl) if the driver fails.
     pub fn step(&mut self) -> Result<()> {
-        let Self { scene, settings, shown, pipeline, points, .. } = self;
+        let Self { scene, settings, shown, pipeline, points, kept, .. } = self;
         self.times.clear();
         self.inspector.forget();
         let mut since = Instant::now();
@@ -154,7 +181,7 @@ impl Live {
             self.times.push((label, now - since));
             since = now;
         };
-        let emission = Emission::new(scene, &settings.trace(self.steps))?;
+        let emission = Emission::new(scene, &settings.trace(self.traced))?;
         let (photons, _) = trace(scene, &emission);
         #[expect(clippy::cast_precision_loss, reason = "a factor for f32 powers")]
         let factor = settings.photons_per_step as f32 / UNIT;
@@ -169,16 +196,26 @@ impl Live {
         let scale = UNIT / self.emitted as f32;
         let view = *shown.surfaces.view();
         let seen: Vec<_> = indirect.iter().copied().filter(|point| point.may_be_seen(&view)).collect();
+        if self.recounts {
+            points.replace(&kept.seen(&view))?;
+            pipeline.clear_photons();
+            pipeline.count(&shown.surfaces, points)?;
+            self.recounts = false;
+        }
+        if settings.keeps_landings() {
+            kept.push(settings.photons_per_step, indirect.clone(), settings.landings_kept as usize);
+        }
         lap("photons");
         shown.direct.step(scene, settings.shadow_rays_per_step);
         lap("direct light");
-        shown.through.step(indirect, &settings.irradiance, scale);
+        shown.through.step(indirect, settings.photons_per_step, &settings.irradiance);
         lap("mirrors and glass");
         points.replace(&seen)?;
         let irradiance = pipeline.add(&shown.surfaces, points)?;
         self.shade.set_light(&shown.direct.image(), shown.through.image());
         self.shade.draw(&shown.surfaces, irradiance, scale)?;
         self.steps += 1;
+        self.traced += 1;
         Ok(())
     }
 
@@ -194,7 +231,7 @@ impl Live {
         &self.scene
     }
 
-    /// Photons that left the lights since the picture was started anew.
+    /// Photons that left the lights since the picture was started anew, and those whose landings were kept then.
     #[must_use]
     pub fn photons(&self) -> u64 {
         self.emitted

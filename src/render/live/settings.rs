@@ -5,7 +5,7 @@ use glam::UVec2;
 use crate::error::{Error, Result};
 use crate::photon::{Emission, TraceSettings};
 use crate::scene::Scene;
-use crate::settings::IrradianceSettings;
+use crate::settings::{Estimate, IrradianceSettings};
 use crate::view::{Camera, View};
 
 /// What a [`Live`](super::Live) picture depends on beside its scene.
@@ -25,13 +25,16 @@ pub struct LiveSettings {
     /// Places at which direct light is sampled in a step, each with one ray to each light; 0 for none after
     /// the first step.
     pub shadow_rays_per_step: u32,
+    /// Landings of the latest steps that are kept, 40 bytes each, and counted again where the camera, the size or
+    /// the way to light change; 0 to start anew. Nothing is kept for splats, which would all be drawn again.
+    pub landings_kept: u32,
     /// The same seed and the same steps give the same picture.
     pub seed: u64,
 }
 
 impl LiveSettings {
     /// 512 x 512 pixels as the scene's camera sees it, radii as in [`IrradianceSettings::default`] with the
-    /// plane of limited pixels, 20,000 photons and 65,536 shadow rays a step.
+    /// plane of limited pixels, 20,000 photons and 65,536 shadow rays a step, 524,288 landings kept.
     #[must_use]
     pub fn new(scene: &Scene) -> Self {
         let mut irradiance = IrradianceSettings::default();
@@ -43,6 +46,7 @@ impl LiveSettings {
             bounces: TraceSettings::default().bounces,
             photons_per_step: 20_000,
             shadow_rays_per_step: 65_536,
+            landings_kept: 1 << 19,
             seed: 1,
         }
     }
@@ -61,6 +65,11 @@ impl LiveSettings {
             });
         }
         Emission::new(scene, &self.trace(0)).map(drop)
+    }
+
+    /// Whether landings are kept for other views.
+    pub(super) fn keeps_landings(&self) -> bool {
+        self.landings_kept > 0 && self.irradiance.estimate != Estimate::Splat
     }
 
     /// The photons of a step, counted from 0.

@@ -87,11 +87,11 @@ impl Way {
         matches!(self, Self::Variable { min_photons: 1 } | Self::Fixed { radius: 1 } | Self::Tables)
     }
 
-    pub(super) fn choice(self) -> KernelRadius {
+    pub(crate) fn choice(self) -> KernelRadius {
         self.radius().map_or(KernelRadius::Variable, KernelRadius::Fixed)
     }
 
-    pub(super) fn estimate(self) -> Estimate {
+    pub(crate) fn estimate(self) -> Estimate {
         match self {
             Self::Variable { .. } | Self::Fixed { .. } => Estimate::Splat,
             Self::Gather { .. } => Estimate::Gather { count_correction: false },
