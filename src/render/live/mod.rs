@@ -146,10 +146,13 @@ impl Live {
             self.shown = shown;
         }
         if moved || redrawn || retraced {
-            if goes_on {
+            if !goes_on {
+                self.kept.clear();
+            }
+            if self.kept.emitted() > 0 {
                 self.shown.through.gather_again();
             } else {
-                self.kept.clear();
+                // Nothing is there that other photons would have to be beside.
                 self.traced = 0;
                 self.shown.through.clear();
             }
