@@ -8,7 +8,7 @@ use varikernel::error::Result;
 use varikernel::gl::Gl;
 use varikernel::photon::TraceSettings;
 use varikernel::render::{Layers, Renderer};
-use varikernel::scene::{Scattering, Scene};
+use varikernel::scene::Scene;
 use varikernel::settings::Kernel;
 
 /// A scene, photons in it, and what is to come out.
@@ -46,9 +46,12 @@ impl<'a> Studio<'a> {
                 traced = begin.elapsed();
             }
         })?;
-        let bends =
-            scene.materials().iter().any(|material| !matches!(material.scattering, Scattering::Lambert(..)));
-        Ok(Self { study, renderer, bends, seconds_before: traced.as_secs_f64() })
+        Ok(Self {
+            study,
+            renderer,
+            bends: scene.has_mirrors_or_glass(),
+            seconds_before: traced.as_secs_f64(),
+        })
     }
 
     /// A picture, its share of pixels whose search MR ended, and how long it took.
