@@ -11,17 +11,19 @@ const MOST: u32 = 1 << 11;
 const TOLERANCE: f32 = 0.0025;
 
 /// Samples of one pixel's emitted light, each with its place from the pixel's corner: those that are there,
-/// and more by their numbers until they are enough. `beside` is the brightest that the middles of the pixels
-/// around emit, which a small part of this one may do as well; `usual` is the picture's usual light.
+/// and more by their numbers until they are enough. `beside` is the darkest and the brightest that the middles
+/// of this pixel and of those around emit, which a small part of this one may do as well; `usual` is the
+/// picture's usual light.
 pub(super) fn emitted(
     found: Vec<(DVec2, Vec3)>,
     more: impl Fn(u32) -> (DVec2, Vec3),
-    beside: f32,
+    beside: [Vec3; 2],
     usual: f32,
 ) -> Vec<(DVec2, Vec3)> {
     let mut found = found;
-    let brightest =
-        |found: &[(DVec2, Vec3)]| found.iter().map(|(_, light)| light.max_element()).fold(beside, f32::max);
+    let brightest = |found: &[(DVec2, Vec3)]| {
+        found.iter().map(|(_, light)| light.max_element()).fold(beside[1].max_element(), f32::max)
+    };
     while error(&found, beside) > TOLERANCE * brightest(&found).max(usual) {
         let count = u32::try_from(found.len()).expect("few samples");
         if count >= MOST {
@@ -35,20 +37,19 @@ pub(super) fn emitted(
     found
 }
 
-/// About how far off the mean of samples is, in the worst of its colours, if one more would be as bright as what
-/// is `beside`: places that are spread evenly are nearer to the area of a shape than chance by the root of the
-/// root of their number.
-fn error(samples: &[(DVec2, Vec3)], beside: f32) -> f32 {
+/// About how far off the mean of samples is, in the worst of its colours, if two more would be as dark and as
+/// bright as what is `beside`: places that are spread evenly are nearer to the area of a shape than chance by
+/// the root of the root of their number.
+fn error(samples: &[(DVec2, Vec3)], beside: [Vec3; 2]) -> f32 {
     #[expect(clippy::cast_precision_loss, reason = "at most thousands")]
-    let count = samples.len() as f32;
-    let all = || samples.iter().map(|&(_, light)| light).chain([Vec3::splat(beside)]);
-    // Where all are alike, and nothing brighter is beside, one more would be alike, too.
+    let count = (samples.len() + beside.len()) as f32;
+    let all = || samples.iter().map(|&(_, light)| light).chain(beside);
     let first = samples[0].1;
-    if samples.iter().all(|&(_, light)| light == first) && first.max_element() >= beside {
+    if all().all(|light| light == first) {
         return 0.0;
     }
-    let mean = all().sum::<Vec3>() / (count + 1.0);
-    let squares = all().map(|light| (light - mean) * (light - mean)).sum::<Vec3>() / (count + 1.0);
+    let mean = all().sum::<Vec3>() / count;
+    let squares = all().map(|light| (light - mean) * (light - mean)).sum::<Vec3>() / count;
     squares.max_element().sqrt() / count.powf(0.75)
 }
 
@@ -65,12 +66,13 @@ mod tests {
     }
 
     fn samples(of: impl Fn(DVec2) -> f32 + Copy, usual: f32) -> Vec<(DVec2, Vec3)> {
-        beside(of, 0.0, usual)
+        let middle = of(DVec2::splat(0.5));
+        beside(of, [middle; 2], usual)
     }
 
-    fn beside(of: impl Fn(DVec2) -> f32 + Copy, beside: f32, usual: f32) -> Vec<(DVec2, Vec3)> {
+    fn beside(of: impl Fn(DVec2) -> f32 + Copy, beside: [f32; 2], usual: f32) -> Vec<(DVec2, Vec3)> {
         let sample = |number: u32| (at(number), Vec3::splat(of(at(number))));
-        emitted((0..8).map(sample).collect(), sample, beside, usual)
+        emitted((0..8).map(sample).collect(), sample, beside.map(Vec3::splat), usual)
     }
 
     #[test]
@@ -86,15 +88,18 @@ mod tests {
     }
 
     #[test]
-    fn a_small_part_of_a_lamp_beside_is_found() {
-        let part = |at: DVec2| if at.x > 0.97 { 17.0 } else { 0.0 };
-        assert_eq!(samples(part, 0.3).len(), 1, "eight samples miss it");
-        let found = beside(part, 17.0, 0.3);
-        let mean = found.iter().map(|(_, light)| light.x).sum::<f32>() / found.len() as f32;
-        assert!((mean / 17.0 - 0.03).abs() < 0.015, "{mean} of {}", found.len());
+    fn small_parts_as_bright_or_dark_as_what_is_beside_are_found() {
+        for (part, rest, middle) in [(17.0, 0.0, 0.0), (0.0, 17.0, 17.0)] {
+            let of = |at: DVec2| if at.x > 0.97 { part } else { rest };
+            assert!(samples(of, 0.3).iter().all(|&(_, light)| light.x == middle), "eight samples miss it");
+            let found = beside(of, [0.0, 17.0], 0.3);
+            let mean = found.iter().map(|(_, light)| light.x).sum::<f32>() / found.len() as f32;
+            let wanted = 0.03f32.mul_add(part, 0.97 * rest);
+            assert!(((mean - wanted) / 17.0).abs() < 0.015, "{mean} of {}", found.len());
+        }
         // Dark beside a lamp is dark, and a lamp within itself is even.
-        assert_eq!(beside(|_| 0.0, 17.0, 0.3).len(), 1);
-        assert_eq!(beside(|_| 17.0, 17.0, 0.3).len(), 8);
+        assert_eq!(beside(|_| 0.0, [0.0, 17.0], 0.3).len(), 1);
+        assert_eq!(beside(|_| 17.0, [17.0; 2], 0.3).len(), 8);
     }
 
     #[test]

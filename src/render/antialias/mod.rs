@@ -241,17 +241,26 @@ impl Shown<'_> {
             let (at, seen) = look(number);
             (at, shines(&seen))
         };
-        let emitted = emitted(lights, more, self.brightest_beside(pixel), self.usual);
+        let emitted = emitted(lights, more, self.beside(pixel), self.usual);
         Around { samples, emitted, own }
     }
 
-    /// The brightest that the middles of a pixel and of those around it emit.
-    fn brightest_beside(&self, pixel: u32) -> f32 {
+    /// The darkest and the brightest that the middles of a pixel and of those around it emit.
+    fn beside(&self, pixel: u32) -> [Vec3; 2] {
         let size = self.emitted.size().as_ivec2();
         let home = UVec2::new(pixel % self.emitted.size().x, pixel / self.emitted.size().x).as_ivec2();
         let inside = |at: &IVec2| at.cmpge(IVec2::ZERO).all() && at.cmplt(size).all();
         let around = square(1).map(|away| home + away).filter(inside).map(IVec2::as_uvec2);
-        around.map(|at| Vec3::from_array(self.emitted.at(at.x, at.y)).max_element()).fold(0.0, f32::max)
+        let mine = Vec3::from_array(self.emitted.values()[pixel as usize]);
+        around.map(|at| Vec3::from_array(self.emitted.at(at.x, at.y))).fold(
+            [mine; 2],
+            |[darkest, brightest], light| {
+                [
+                    if light.max_element() < darkest.max_element() { light } else { darkest },
+                    if light.max_element() > brightest.max_element() { light } else { brightest },
+                ]
+            },
+        )
     }
 
     /// The pixel whose middle is nearest on the same surface; or else on one that faces about the same way.
