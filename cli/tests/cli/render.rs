@@ -83,7 +83,7 @@ fn an_exr_holds_every_layer_and_a_png_a_picture() {
         ("first_bounce", "Rays"),
         ("light_samples", "I32(1)"),
         ("estimate", "Tables"),
-        ("antialias", "I32(8)"),
+        ("antialias", "I32(16)"),
         ("filter", "Box"),
     ] {
         assert_eq!(attributes[name], value, "{name}");

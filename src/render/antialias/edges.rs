@@ -100,3 +100,31 @@ fn show_differs(bent: &Neighbours<'_>, pixel: u32, other: u32) -> bool {
     };
     mine.len() != others.len() || !mine.iter().zip(others).all(alike)
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+
+    /// The edges of 5 by 5 pixels of one face, that in the middle brighter by a factor.
+    fn around_a_bright_pixel(factor: f32) -> Vec<u32> {
+        let size = UVec2::splat(5);
+        let first = |pixel: u32| First {
+            surface: 1,
+            position: UVec2::new(pixel % 5, pixel / 5).as_dvec2().extend(0.0),
+            normal: DVec3::Z,
+            reflectance: Vec3::ONE,
+        };
+        let firsts: Vec<First> = (0..25).map(first).collect();
+        let light = |x, y| if (x, y) == (2, 2) { [factor, factor, factor, 1.0] } else { [1.0; 4] };
+        edges(&firsts, &Neighbours::new(size, &[]), &Image::from_fn(size, light), 1.0)
+    }
+
+    #[test]
+    fn corners_of_pixels_count_beside_lamps_alone() {
+        assert!(around_a_bright_pixel(1.2).is_empty(), "noise");
+        assert_eq!(around_a_bright_pixel(3.0), [7, 11, 12, 13, 17], "a shadow's edge");
+        assert_eq!(around_a_bright_pixel(17.0), [6, 7, 8, 11, 12, 13, 16, 17, 18], "a lamp");
+    }
+}
