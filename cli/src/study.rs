@@ -30,7 +30,8 @@ const SAVE_EVERY: Duration = Duration::from_secs(10);
 /// With --against, nothing is drawn: pictures that any renderer made are judged instead, by a CSV file with the
 /// columns scene, way (the renderer and its version), options, seed, seconds and file, an EXR beside it. The way
 /// "reference" is for pictures whose mean is right, and "layers" for an EXR of `varikernel render`, by which
-/// edges, caustics and penumbras are judged apart. The folder gets against.html, against.csv and against.json.
+/// lamps, edges, caustics and penumbras are judged apart. The folder gets against.html, against.csv and
+/// against.json.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
     /// Folder to write to; made if it is missing.

@@ -50,9 +50,10 @@ impl Reference {
         });
         let mut all = vec![(Region::Whole, (0..pixels).collect())];
         for region in Region::ALL.into_iter().skip(1) {
-            let is_in = |pixel: &usize| regions.is_some_and(|regions| regions.values()[*pixel] == region);
+            let is_in = |pixel: &usize| regions.is_some_and(|regions| regions.values()[*pixel].is_in(region));
             let inside: Vec<usize> = (0..pixels).filter(is_in).collect();
-            if !inside.is_empty() {
+            // Where no lamp is seen, that is the whole again.
+            if !inside.is_empty() && !(region == Region::AllButLamps && inside.len() == pixels) {
                 all.push((region, inside));
             }
         }
@@ -134,6 +135,17 @@ mod tests {
         assert!((caustic.rmse - 0.5).abs() < 1e-12 && (caustic.median - 0.2).abs() < 1e-12);
         assert!((rest.rmse - (0.25_f64 / 3.0).sqrt() / 2.0).abs() < 1e-12);
         assert_eq!(reference.noise(), [], "one picture does not know how far off it is");
+    }
+
+    #[test]
+    fn lamps_are_left_out_of_all_but_them() {
+        let regions = Image::from_values(UVec2::new(2, 1), vec![Region::Lamps, Region::Rest]);
+        let reference = Reference::new(&[grey([7.0, 1.0])], Some(&regions));
+        let errors = reference.errors(&grey([0.0, 1.0]));
+        let wrong: Vec<_> = errors.iter().map(|error| (error.region, error.rmse > 0.0)).collect();
+        let lamps = [Region::Whole, Region::Lamps].map(|region| (region, true));
+        let others = [Region::AllButLamps, Region::Rest].map(|region| (region, false));
+        assert_eq!(wrong, [lamps[0], others[0], lamps[1], others[1]]);
     }
 
     #[test]

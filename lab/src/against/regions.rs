@@ -20,12 +20,16 @@ const SHADOW: f32 = 0.1;
 /// What is darker than this part of the picture's median is no penumbra.
 const DARK: f32 = 0.05;
 
-/// A part of a picture; a pixel is in the first that it fits.
+/// A part of a picture; but for the first two, a pixel is in the first that it fits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Region {
     /// Every pixel.
     Whole,
+    /// Every pixel but those of lamps, whose edges may outweigh all the rest.
+    AllButLamps,
+    /// Shines and reflects nothing, or is next to such a pixel.
+    Lamps,
     /// Next to another surface, or to the same after a fold.
     Edges,
     /// What is seen in mirrors and through glass.
@@ -40,14 +44,33 @@ pub enum Region {
 
 impl Region {
     /// All of them.
-    pub const ALL: [Self; 6] =
-        [Self::Whole, Self::Edges, Self::MirrorsAndGlass, Self::Caustic, Self::Penumbra, Self::Rest];
+    pub const ALL: [Self; 8] = [
+        Self::Whole,
+        Self::AllButLamps,
+        Self::Lamps,
+        Self::Edges,
+        Self::MirrorsAndGlass,
+        Self::Caustic,
+        Self::Penumbra,
+        Self::Rest,
+    ];
+
+    /// Whether a pixel of this region is in another, which may be one of many.
+    pub(super) fn is_in(self, other: Self) -> bool {
+        match other {
+            Self::Whole => true,
+            Self::AllButLamps => self != Self::Lamps,
+            other => self == other,
+        }
+    }
 
     /// For people.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Whole => "whole picture",
+            Self::AllButLamps => "all but lamps",
+            Self::Lamps => "lamps",
             Self::Edges => "edges",
             Self::MirrorsAndGlass => "mirrors and glass",
             Self::Caustic => "caustic",
@@ -108,9 +131,22 @@ impl Layers {
                 if self.is_edge(x, y) {
                     regions.set(x, y, Region::Edges);
                 }
+                if self.is_at_a_lamp(x, y) {
+                    regions.set(x, y, Region::Lamps);
+                }
             }
         }
         regions
+    }
+
+    fn is_at_a_lamp(&self, x: u32, y: u32) -> bool {
+        let size = self.albedo.size();
+        let shines = |x: u32, y: u32| {
+            is_zero(self.albedo.at(x, y)) && is_zero(self.indirect.at(x, y)) && !is_zero(self.direct.at(x, y))
+        };
+        let mut around = (y.saturating_sub(1)..=(y + 1).min(size.y - 1))
+            .flat_map(|y| (x.saturating_sub(1)..=(x + 1).min(size.x - 1)).map(move |x| (x, y)));
+        around.any(|(x, y)| shines(x, y))
     }
 
     fn is_edge(&self, x: u32, y: u32) -> bool {
@@ -239,7 +275,15 @@ mod tests {
         let mut layers = wall();
         layers.albedo = Image::filled(SIZE, [0.0; 3]);
         assert_eq!(count(&layers, Region::MirrorsAndGlass), 128);
-        layers.indirect = Image::filled(SIZE, [0.0; 3]);
-        assert_eq!(count(&layers, Region::Rest), 128, "a lamp shows nothing");
+    }
+
+    #[test]
+    fn what_shines_and_reflects_nothing_is_a_lamp() {
+        let mut layers = wall();
+        layers.albedo.set(3, 3, [0.0; 3]);
+        layers.indirect.set(3, 3, [0.0; 3]);
+        assert_eq!(count(&layers, Region::Lamps), 9, "with the pixels around");
+        layers.direct.set(3, 3, [0.0; 3]);
+        assert_eq!(count(&layers, Region::Lamps), 0, "it is only black");
     }
 }
