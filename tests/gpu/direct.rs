@@ -138,13 +138,14 @@ fn a_lamp_of_many_triangles_is_that_of_few() {
     }
 }
 
-/// A picture of one pixel has no neighbours that tell of a penumbra: the mean over seeds is right all the same.
+/// A picture of one pixel has no neighbours that tell of a penumbra, and four rays often see all of a lamp of
+/// which a tenth is hidden: the pixel is right all the same.
 #[test]
-fn one_pixel_in_penumbra_is_right_in_the_mean() {
+fn one_pixel_in_penumbra_is_right_for_every_seed() {
     let gl = egl();
     let mut scene = below("glow", &squares(1));
     // Beside the board's shadow.
-    scene.camera.position.x = 0.55;
+    scene.camera.position.x = 0.8;
     scene.camera.position.y = 1.0;
     let usual = asked(DirectLight::Traced, 1);
     let size = glam::UVec2::ONE;
@@ -154,13 +155,12 @@ fn one_pixel_in_penumbra_is_right_in_the_mean() {
     let known = 0.5 * irradiance.y / PI;
     let LightShape::Area(lamp) = &scene.lights()[0].shape else { panic!("a lamp of triangles") };
     let share = irradiance.y / lamp.irradiance(hit.position, hit.normal).unwrap().y;
-    assert!((0.02..0.98).contains(&share), "in penumbra: {share}");
-    let of_seed = |seed| {
+    assert!((0.85..0.95).contains(&share), "in penumbra: {share}");
+    for seed in 1..=24 {
         let settings = PictureSettings { size, seed, ..usual };
-        f64::from(picture(&gl, &scene, &settings).direct.at(0, 0)[1])
-    };
-    let mean = (1..=24).map(of_seed).sum::<f64>() / 24.0;
-    assert!((mean / known - 1.0).abs() < 0.02, "{mean} {known}");
+        let found = f64::from(picture(&gl, &scene, &settings).direct.at(0, 0)[1]);
+        assert!((found / known - 1.0).abs() < 0.05, "{seed}: {found} {known}");
+    }
 }
 
 /// More lamps than are looked at one by one, in three colours, with a board in the way of some.
