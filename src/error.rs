@@ -127,6 +127,16 @@ pub enum Error {
         kind: &'static str,
     },
 
+    /// A state of the host's context under which no call can work, and that cannot be put back; nothing was
+    /// drawn or changed.
+    #[error("{state}\nhelp: {remedy}")]
+    HostState {
+        /// Which, and what it would do.
+        state: &'static str,
+        /// What the host can do about it.
+        remedy: &'static str,
+    },
+
     /// GL_OUT_OF_MEMORY. What the call had made is freed, and what was there before is as it was.
     #[error(
         "OpenGL has no memory left for {what}{}; this library holds {held} bytes in this context\n\

@@ -65,7 +65,7 @@ impl From<Error> for Failure {
             Error::Shader { .. } => Status::Shader,
             Error::OutOfMemory { .. } => Status::OutOfMemory,
             Error::ContextLost => Status::ContextLost,
-            Error::Gl { .. } => Status::OpenGl,
+            Error::Gl { .. } | Error::HostState { .. } => Status::OpenGl,
             Error::NoContext { .. } => Status::NoContext,
             // Nothing here reads files, has scenes with lights, lets a caller name uniforms or needs a query.
             Error::File { .. }

@@ -43,7 +43,7 @@ pub(crate) fn fill_where(
     test: FragmentTest,
     target: &mut Target,
 ) -> Result<()> {
-    let _state = StateGuard::new(gl);
+    let _state = StateGuard::new(gl)?;
     gl.current()?;
     target.clear(&[0]);
     attach(gl, target, texture, test)?;
@@ -68,7 +68,7 @@ pub(crate) fn fill_where(
                 // The triangle lies at depth 0.5 whatever the vertex stage does; this puts it on the far
                 // plane.
                 let (far, function) = if reversed { (0.0, glow::LESS) } else { (1.0, glow::GREATER) };
-                glow.depth_range_f32(far, far);
+                glow.depth_range_f64(far, far);
                 glow.depth_func(function);
             }
         }

@@ -5,12 +5,27 @@ use glow::HasContext as _;
 use super::{Gl, Target, Texture};
 
 impl Gl {
+    /// Counts the debug groups that a call may push, if the host's may be all that there are.
+    pub(super) fn count_groups(&self, asks: bool) {
+        let Some(glow) = self.live().filter(|_| self.commands().names_things) else { return };
+        // SAFETY: the context is current, and has KHR_debug.
+        let limit = |name| unsafe { glow.get_parameter_i32(name) };
+        let left =
+            asks.then(|| limit(glow::MAX_DEBUG_GROUP_STACK_DEPTH) - limit(glow::DEBUG_GROUP_STACK_DEPTH));
+        self.inner.groups_left.set(left.map_or(u32::MAX, |left| u32::try_from(left).unwrap_or(0)));
+    }
+
     /// Runs `work` inside a debug group that RenderDoc and apitrace show as `label`.
     pub(super) fn labelled<T>(&self, label: &str, work: impl FnOnce() -> T) -> T {
-        let Some(glow) = self.live().filter(|_| self.inner.names_things) else { return work() };
+        let left = &self.inner.groups_left;
+        let Some(glow) = self.live().filter(|_| self.commands().names_things && left.get() > 0) else {
+            return work();
+        };
+        left.set(left.get() - 1);
         // SAFETY: the context is current and has KHR_debug.
         unsafe { glow.push_debug_group(glow::DEBUG_SOURCE_APPLICATION, 0, label) };
         let result = work();
+        left.set(left.get() + 1);
         if let Some(glow) = self.live() {
             // SAFETY: as above; the group was pushed before the work.
             unsafe { glow.pop_debug_group() };
@@ -20,7 +35,7 @@ impl Gl {
 
     /// Names an object, which was bound at least once since it exists from then on.
     pub(super) fn label(&self, kind: u32, name: u32, label: &str) {
-        if let Some(glow) = self.live().filter(|_| self.inner.names_things) {
+        if let Some(glow) = self.live().filter(|_| self.commands().names_things) {
             // SAFETY: the context is current and has KHR_debug; a label has no effect on rendering.
             unsafe { glow.object_label(kind, name, Some(format!("varikernel: {label}"))) };
         }
@@ -28,7 +43,7 @@ impl Gl {
 
     /// Names the objects of the handle itself.
     pub(super) fn label_own_objects(&self) {
-        if !self.inner.names_things {
+        if !self.commands().names_things {
             return;
         }
         let (glow, array) = (self.glow(), self.inner.vertex_array);

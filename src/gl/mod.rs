@@ -8,6 +8,7 @@
     reason = "OpenGL is a C interface; rule 8 of CONTRIBUTING.md confines it to this module"
 )]
 
+mod commands;
 mod device_info;
 mod errors;
 mod fragment_test;
@@ -59,6 +60,7 @@ use std::sync::Arc;
 use glow::HasContext as _;
 
 use crate::error::{Error, Result};
+use commands::{Commands, Extent};
 use errors::{error_name, gl_error};
 
 /// A handle to a current OpenGL 3.3 core context; cheap to clone, tied to its thread.
@@ -70,10 +72,11 @@ pub struct Gl {
 
 struct Inner {
     glow: Arc<glow::Context>,
-    get_booleani_v: Option<GetBooleaniV>,
+    commands: Commands,
+    extent: Extent,
     info: DeviceInfo,
-    /// Whether passes and objects can be named: KHR_debug.
-    names_things: bool,
+    /// Debug groups that may still be pushed.
+    groups_left: Cell<u32>,
     vertex_array: glow::VertexArray,
     nearest: glow::Sampler,
     nearest_mipmap: glow::Sampler,
@@ -90,8 +93,6 @@ struct Inner {
     /// The context itself, when the library opened it. Last, so that it is dropped last.
     _context: Option<Box<dyn Any>>,
 }
-
-type GetBooleaniV = unsafe extern "system" fn(target: u32, index: u32, data: *mut u8);
 
 impl Gl {
     /// Loads the commands of the current context through `loader`.
@@ -115,24 +116,19 @@ impl Gl {
         context: Option<Box<dyn Any>>,
     ) -> Result<Self> {
         check_current(&mut loader)?;
-        let names_things = [c"glPushDebugGroup", c"glPopDebugGroup", c"glObjectLabel"]
-            .iter()
-            .all(|command| !loader(command).is_null());
-        let get_booleani_v = loader(c"glGetBooleani_v");
+        let commands = Commands::load(&mut loader);
         // SAFETY: the caller guarantees for the loader; a current context was just seen.
         let glow = unsafe { glow::Context::from_loader_function_cstr(loader) };
-        let get_booleani_v = (!get_booleani_v.is_null()).then(|| {
-            // SAFETY: the caller guarantees that this is the address of glGetBooleani_v, which has this type.
-            unsafe { std::mem::transmute::<*const c_void, GetBooleaniV>(get_booleani_v) }
-        });
         // SAFETY: guaranteed by the caller.
-        unsafe { Self::new(Arc::new(glow), get_booleani_v, names_things, context) }
+        unsafe { Self::new(Arc::new(glow), commands, context) }
     }
 
     /// Uses a context that the host has already wrapped in glow 0.17.
     ///
-    /// glow cannot read the colour mask of one draw buffer (`glColorMaski`), so with this constructor the
-    /// mask of draw buffer 0 is put back on all; [`Gl::from_loader`] puts back each.
+    /// glow lacks commands that read the state of one draw buffer or viewport, so with this constructor the
+    /// colour mask of draw buffer 0 is put back on all of them, as are the blending of the first, and the first
+    /// viewport, depth range and scissor test; conditional rendering is not noticed. [`Gl::from_loader`] puts
+    /// back each.
     ///
     /// # Errors
     /// [`Error::Version`] when the context is older than 3.3.
@@ -142,7 +138,7 @@ impl Gl {
     /// from them is used or dropped, until [`Gl::abandon`] was called.
     pub unsafe fn from_glow(glow: Arc<glow::Context>) -> Result<Self> {
         // SAFETY: guaranteed by the caller.
-        unsafe { Self::new(glow, None, true, None) }
+        unsafe { Self::new(glow, Commands::of_glow(), None) }
     }
 
     /// As [`Gl::from_loader`], and keeps `context` alive as long as anything made from the handle.
@@ -160,8 +156,7 @@ impl Gl {
 
     unsafe fn new(
         glow: Arc<glow::Context>,
-        get_booleani_v: Option<GetBooleaniV>,
-        names_things: bool,
+        commands: Commands,
         context: Option<Box<dyn Any>>,
     ) -> Result<Self> {
         let info = DeviceInfo::of(&glow);
@@ -169,7 +164,8 @@ impl Gl {
         if version.is_embedded || (version.major, version.minor) < (3, 3) {
             return Err(Error::Version { version: info.version, renderer: info.renderer });
         }
-        let names_things = names_things && glow.supports_debug();
+        let commands = commands.of_version(&glow);
+        let extent = Extent::of(&glow, &commands);
         // SAFETY: the context is current, as the caller guarantees; creating objects changes no binding.
         let (vertex_array, nearest, nearest_mipmap) = unsafe {
             (
@@ -181,9 +177,10 @@ impl Gl {
         tracing::debug!(renderer = info.renderer, version = info.version, "OpenGL context taken");
         let inner = Inner {
             glow,
-            get_booleani_v,
+            commands,
+            extent,
             info,
-            names_things,
+            groups_left: Cell::new(u32::MAX),
             vertex_array,
             nearest,
             nearest_mipmap,
@@ -246,30 +243,6 @@ impl Gl {
     /// The sampler under which every level of a texture of `levels` levels is complete.
     fn sampler(&self, levels: u32) -> glow::Sampler {
         if levels > 1 { self.inner.nearest_mipmap } else { self.inner.nearest }
-    }
-
-    /// The colour mask of draw buffer `index`.
-    fn color_mask(&self, index: u32) -> [bool; 4] {
-        let mut mask = [0_u8; 4];
-        match self.inner.get_booleani_v {
-            // SAFETY: GL_COLOR_WRITEMASK has four values, and the mask has room for them.
-            Some(get) => unsafe { get(glow::COLOR_WRITEMASK, index, mask.as_mut_ptr()) },
-            // SAFETY: the context is current; the mask of buffer 0 has four values.
-            None => return unsafe { self.glow().get_parameter_bool_array::<4>(glow::COLOR_WRITEMASK) },
-        }
-        mask.map(|value| value != 0)
-    }
-
-    /// Whether draw buffer `index` blends.
-    fn is_blending(&self, index: u32) -> bool {
-        let mut blends = 0_u8;
-        match self.inner.get_booleani_v {
-            // SAFETY: GL_BLEND has one value for each draw buffer.
-            Some(get) => unsafe { get(glow::BLEND, index, &raw mut blends) },
-            // SAFETY: the context is current; OpenGL converts the value.
-            None => return unsafe { self.glow().get_parameter_indexed_i32(glow::BLEND, index) } != 0,
-        }
-        blends != 0
     }
 
     /// Whether a buffer can be bound that takes the results of queries: OpenGL 4.4.

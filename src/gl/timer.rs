@@ -61,7 +61,7 @@ impl Timer {
     /// # Errors
     /// [`Error::OutOfMemory`](crate::Error::OutOfMemory).
     pub fn new(gl: &Gl) -> Result<Self> {
-        let _state = StateGuard::new(gl);
+        let _state = StateGuard::new(gl)?;
         let llvmpipe_frame = if gl.info().is_llvmpipe() {
             let pixel = Texture::new(gl, TextureFormat::R32Uint, UVec2::ONE, 1)?;
             Some(Target::single(gl, pixel)?.labelled(&["frame before a timed one"]))
@@ -94,7 +94,7 @@ impl Timer {
 
     /// Begins the query, with nothing before it left to do.
     fn begin(&mut self) -> Result<()> {
-        let _state = StateGuard::new(&self.gl);
+        let _state = StateGuard::new(&self.gl)?;
         let glow = self.gl.current()?;
         if let Some(frame) = &mut self.llvmpipe_frame {
             frame.clear(&[0]);

@@ -70,7 +70,7 @@ impl DensityStage {
     }
 
     pub(crate) fn of_kind(gl: &Gl, size: UVec2, has_flux: bool) -> Result<Self> {
-        let _state = StateGuard::new(gl);
+        let _state = StateGuard::new(gl)?;
         let target = Target::of(gl, &Self::shape(size, has_flux))?;
         let map = DensityMap::of_stage(target.texture());
         let beside = if has_flux {
@@ -80,7 +80,7 @@ impl DensityStage {
         };
         let program = Program::new(gl, &source(has_flux))?;
         let mut stage = Self { gl: gl.clone(), program, target, map, beside, read: (0, 0) };
-        stage.clear();
+        stage.forget();
         Ok(stage)
     }
 
@@ -101,7 +101,7 @@ impl DensityStage {
     /// Goes on with another target, without photons.
     pub(crate) fn resize(&mut self, targets: &mut Targets) {
         self.take(targets.take());
-        self.clear();
+        self.forget();
     }
 
     /// Goes on with another target of the same shape.
@@ -122,8 +122,17 @@ impl DensityStage {
     }
 
     /// Forgets all photons.
-    pub fn clear(&mut self) {
-        let _state = StateGuard::new(&self.gl);
+    ///
+    /// # Errors
+    /// [`Error::HostState`](crate::Error::HostState).
+    pub fn clear(&mut self) -> Result<()> {
+        let _state = StateGuard::new(&self.gl)?;
+        self.forget();
+        Ok(())
+    }
+
+    /// The same within a call.
+    fn forget(&mut self) {
         self.target.clear_floats(&vec![Vec4::ZERO; self.target.textures().len()]);
         self.map.set_bounds(CountBounds::total_at_most(0));
         self.read = (0, 0);
@@ -186,7 +195,7 @@ impl DensityStage {
     /// photons; [`Error::Gl`] if the driver fails.
     pub fn add(&mut self, surfaces: &SurfaceMaps, photons: &PhotonPoints) -> Result<&DensityMap> {
         surfaces.check_size(self.map.size())?;
-        let state = StateGuard::new(&self.gl);
+        let state = StateGuard::new(&self.gl)?;
         self.make_room(photons)?;
         let drawn = self.drawn() + photons.count();
         // First, so that the bounds hold also where drawing fails half-way.
@@ -238,7 +247,7 @@ impl DensityStage {
     /// # Errors
     /// [`Error::Gl`] if the driver fails.
     pub fn read_counts(&self) -> Result<Image<f32>> {
-        let _state = StateGuard::new(&self.gl);
+        let _state = StateGuard::new(&self.gl)?;
         let counts = self.target.texture().read(0);
         self.gl.check("reading a density map back")?;
         Ok(counts)

@@ -33,7 +33,7 @@ impl GatherStage {
     /// [`Error::TooLarge`](crate::Error::TooLarge); [`Error::Shader`](crate::Error::Shader) if the driver
     /// refuses the shader; [`Error::Gl`](crate::Error::Gl) when memory runs out.
     pub fn new(gl: &Gl, size: UVec2, settings: &IrradianceSettings) -> Result<Self> {
-        let _state = StateGuard::new(gl);
+        let _state = StateGuard::new(gl)?;
         let program = Program::new(gl, &source(settings))?;
         let irradiance = IrradianceMap::of(Target::of(gl, &IrradianceMap::shape(size))?);
         Ok(Self { gl: gl.clone(), program, radius: settings.radius, irradiance })
@@ -63,7 +63,7 @@ impl GatherStage {
     ) -> Result<&IrradianceMap> {
         check(surfaces, self.irradiance.size(), radius, self.radius)?;
         surfaces.check_size(power.size())?;
-        let _state = StateGuard::new(&self.gl);
+        let _state = StateGuard::new(&self.gl)?;
         let pass = surfaces.read_by(Pass::new(LABEL, &self.program)).read("power", power.as_texture());
         read_radius(pass, radius).set("camera", surfaces.view().position()).fill(self.irradiance.target())?;
         self.gl.check("gathering photons")?;

@@ -92,12 +92,11 @@ impl IrradiancePipeline {
             return self.gl.current().map(drop);
         }
         check_fits(self.gl.info(), size)?;
-        let state = StateGuard::new(&self.gl);
+        let _state = StateGuard::new(&self.gl)?;
         let mut shapes = vec![DensityStage::shape(size, self.density.has_flux())];
         shapes.extend(self.spreads.shapes(size));
         let mut targets = Targets::new(&self.gl, &shapes)?;
         self.gl.check("resizing an irradiance pipeline")?;
-        drop(state);
         if let Some((_, radii)) = &mut self.radii {
             radii.resize(size)?;
         }
@@ -147,7 +146,7 @@ impl IrradiancePipeline {
             self.searched = false;
         }
         // What the stage held when it was used last is of other settings or photons.
-        self.clear_light();
+        self.clear_light()?;
         self.settings = settings;
         Ok(())
     }
@@ -157,7 +156,7 @@ impl IrradiancePipeline {
     /// # Errors
     /// As [`add`](Self::add).
     pub fn render(&mut self, surfaces: &SurfaceMaps, photons: &PhotonPoints) -> Result<&IrradianceMap> {
-        self.clear();
+        self.clear()?;
         self.add(surfaces, photons)
     }
 
@@ -226,10 +225,14 @@ impl IrradiancePipeline {
     }
 
     /// Forgets all photons and their light: when the camera or what it sees has moved.
-    pub fn clear(&mut self) {
-        self.clear_photons();
-        self.clear_light();
+    ///
+    /// # Errors
+    /// [`Error::HostState`](crate::Error::HostState).
+    pub fn clear(&mut self) -> Result<()> {
+        self.clear_photons()?;
+        self.clear_light()?;
         self.forget_camera();
+        Ok(())
     }
 
     /// Has what light from tables needs of the camera and the surfaces alone made anew by the next light:
@@ -240,16 +243,24 @@ impl IrradiancePipeline {
     }
 
     /// Forgets the photons that were counted.
-    pub fn clear_photons(&mut self) {
-        self.density.clear();
+    ///
+    /// # Errors
+    /// As [`clear`](Self::clear).
+    pub fn clear_photons(&mut self) -> Result<()> {
+        self.density.clear()?;
         self.searched = false;
         self.gathered = false;
+        Ok(())
     }
 
     /// Forgets the light, and keeps the photons that were counted.
-    pub fn clear_light(&mut self) {
-        self.spreads.clear();
+    ///
+    /// # Errors
+    /// As [`clear`](Self::clear).
+    pub fn clear_light(&mut self) -> Result<()> {
+        self.spreads.clear()?;
         self.gathered = false;
+        Ok(())
     }
 
     /// Searches radii again for the next light, though they are known.

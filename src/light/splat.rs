@@ -62,7 +62,7 @@ impl SplatStage {
     /// [`Error::TooLarge`](crate::Error::TooLarge); [`Error::Shader`](crate::Error::Shader) if the driver
     /// refuses a shader; [`Error::Gl`](crate::Error::Gl) when memory runs out.
     pub fn new(gl: &Gl, size: UVec2, settings: &IrradianceSettings) -> Result<Self> {
-        let _state = StateGuard::new(gl);
+        let _state = StateGuard::new(gl)?;
         let [covered, spread, addition] = sources(settings);
         let mut targets = Targets::new(gl, &Self::shapes(size))?;
         let of_chunk = targets.take();
@@ -94,13 +94,17 @@ impl SplatStage {
     pub(crate) fn resize(&mut self, targets: &mut Targets) {
         self.of_chunk = targets.take();
         self.irradiance = IrradianceMap::of(targets.take());
-        self.clear();
+        self.irradiance.target().clear_floats(&[Vec4::ZERO]);
     }
 
     /// Forgets all light.
-    pub fn clear(&mut self) {
-        let _state = StateGuard::new(&self.gl);
+    ///
+    /// # Errors
+    /// [`Error::HostState`](crate::Error::HostState).
+    pub fn clear(&mut self) -> Result<()> {
+        let _state = StateGuard::new(&self.gl)?;
         self.irradiance.target().clear_floats(&[Vec4::ZERO]);
+        Ok(())
     }
 
     /// Spreads all photons, and nothing else.
@@ -113,7 +117,7 @@ impl SplatStage {
         photons: &PhotonPoints,
         radius: KernelRadii<'_>,
     ) -> Result<&IrradianceMap> {
-        self.clear();
+        self.clear()?;
         self.add(surfaces, photons, radius)
     }
 
@@ -130,7 +134,7 @@ impl SplatStage {
         radius: KernelRadii<'_>,
     ) -> Result<&IrradianceMap> {
         check(surfaces, self.irradiance.size(), radius, self.radius)?;
-        let _state = StateGuard::new(&self.gl);
+        let _state = StateGuard::new(&self.gl)?;
         let camera = surfaces.view().position();
         for chunk in photons.chunks() {
             self.table.clear_floats(&[Vec4::ZERO]);

@@ -122,9 +122,10 @@ impl Spreads {
     }
 
     /// Forgets the light; the others hold that of the last photons alone.
-    pub(super) fn clear(&mut self) {
-        if let Stage::Splat(splat) = &mut self.made[self.current].stage {
-            splat.clear();
+    pub(super) fn clear(&mut self) -> Result<()> {
+        match &mut self.made[self.current].stage {
+            Stage::Splat(splat) => splat.clear(),
+            _ => Ok(()),
         }
     }
 

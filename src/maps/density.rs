@@ -25,7 +25,7 @@ impl DensityMap {
     /// # Errors
     /// [`Error::TooLarge`]; [`Error::OutOfMemory`].
     pub fn upload(gl: &Gl, counts: &Image<u32>, bounds: CountBounds) -> Result<Self> {
-        let _state = StateGuard::new(gl);
+        let _state = StateGuard::new(gl)?;
         let texture = Texture::new(gl, TextureFormat::R32Uint, counts.size(), 1)?.labelled("density map");
         texture.upload(counts);
         gl.check("uploading a density map")?;
@@ -45,7 +45,7 @@ impl DensityMap {
             });
         }
         let gl = self.texture.gl();
-        let _state = StateGuard::new(gl);
+        let _state = StateGuard::new(gl)?;
         self.texture.upload(counts);
         gl.check("replacing a density map")?;
         self.bounds = bounds;
@@ -62,7 +62,7 @@ impl DensityMap {
     /// [`Error::Mismatch`] unless it is a GL_TEXTURE_2D in GL_R32UI, GL_R32F or GL_R8UI, with
     /// level 0 as its base and red where red belongs.
     pub fn borrow(gl: &Gl, texture: glow::Texture, bounds: CountBounds) -> Result<Self> {
-        let _state = StateGuard::new(gl);
+        let _state = StateGuard::new(gl)?;
         Ok(Self { texture: Texture::borrow(gl, texture)?, bounds })
     }
 

@@ -102,7 +102,7 @@ impl FluxMap {
     /// [`Error::Gl`](crate::Error::Gl) if the driver fails.
     pub fn read_units(&self) -> Result<Image<[u64; 4]>> {
         let gl = self.low.gl();
-        let _state = StateGuard::new(gl);
+        let _state = StateGuard::new(gl)?;
         let (low, high): (Image<[f32; 4]>, Image<[f32; 4]>) = (self.low.read(0), self.high.read(0));
         gl.check("reading a flux map back")?;
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "whole numbers")]

@@ -44,7 +44,7 @@ impl IrradianceMap {
     /// [`Error::Gl`](crate::Error::Gl) if the driver fails.
     pub fn read(&self) -> Result<Image<[f32; 4]>> {
         let gl = self.target.texture().gl();
-        let _state = StateGuard::new(gl);
+        let _state = StateGuard::new(gl)?;
         let image = self.target.texture().read(0);
         gl.check("reading an irradiance map back")?;
         Ok(image)

@@ -29,7 +29,7 @@ impl Mask {
     /// # Errors
     /// [`Error::TooLarge`]; [`Error::OutOfMemory`].
     pub fn upload(gl: &Gl, mask: &Image<u8>) -> Result<Self> {
-        let _state = StateGuard::new(gl);
+        let _state = StateGuard::new(gl)?;
         let texture = Texture::new(gl, TextureFormat::R8Uint, mask.size(), 1)?.labelled("mask");
         texture.upload(mask);
         gl.check("uploading a mask")?;
@@ -43,7 +43,7 @@ impl Mask {
     /// [`Error::Mismatch`] unless it is a GL_TEXTURE_2D of one of the formats above, with level 0
     /// as its base and red where red belongs.
     pub fn borrow(gl: &Gl, texture: glow::Texture) -> Result<Self> {
-        let _state = StateGuard::new(gl);
+        let _state = StateGuard::new(gl)?;
         let texture = Texture::borrow(gl, texture)?;
         if texture.format().is_float() {
             return Err(Error::Mismatch {
@@ -99,7 +99,7 @@ impl MaskMaker {
     /// # Errors
     /// [`Error::TooLarge`]; [`Error::Shader`] if the driver refuses the shader; [`Error::OutOfMemory`].
     pub fn new(gl: &Gl, size: UVec2) -> Result<Self> {
-        let _state = StateGuard::new(gl);
+        let _state = StateGuard::new(gl)?;
         let target =
             Target::single(gl, Texture::new(gl, TextureFormat::R8Uint, size, 1)?)?.labelled(&[TESTED]);
         let mask = Mask::borrow(gl, target.texture().name())?;

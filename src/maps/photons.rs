@@ -41,7 +41,7 @@ impl PhotonPoints {
     /// # Errors
     /// [`Error::Mismatch`] if it is no buffer, or has no room for them; [`Error::Gl`] when names run out.
     pub fn borrow(gl: &Gl, buffer: glow::Buffer, count: u32) -> Result<Self> {
-        let _state = StateGuard::new(gl);
+        let _state = StateGuard::new(gl)?;
         let chunks = (0..count).step_by(CHUNK as usize).map(|first| {
             Vertices::borrow(gl, buffer, first, CHUNK.min(count - first), &PhotonPoint::ATTRIBUTES)
         });
@@ -60,7 +60,7 @@ impl PhotonPoints {
     /// [`Error::Mismatch`] if the buffer is the host's; [`Error::OutOfMemory`].
     pub fn upload(&mut self, photons: &[PhotonPoint]) -> Result<()> {
         self.check_ours()?;
-        let _state = StateGuard::new(&self.gl);
+        let _state = StateGuard::new(&self.gl)?;
         for chunk in photons.chunks(CHUNK as usize) {
             let vertices = match self.spare.pop() {
                 Some(mut vertices) => vertices.replace(chunk).map(|()| vertices),

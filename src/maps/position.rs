@@ -32,7 +32,7 @@ impl PositionMaker {
     /// [`Error::Shader`](crate::Error::Shader) if the driver refuses the shader;
     /// [`Error::Gl`](crate::Error::Gl) when memory runs out.
     pub fn borrow(gl: &Gl, depth: HostDepth) -> Result<Self> {
-        let _state = StateGuard::new(gl);
+        let _state = StateGuard::new(gl)?;
         let HostDepth { texture, reversed, zero_to_one } = depth;
         let depth = Texture::borrow_depth(gl, texture)?;
         let texture = Texture::new(gl, TextureFormat::Rgba32Float, depth.size(), 1)?;
@@ -54,7 +54,7 @@ impl PositionMaker {
     /// [`Error::Gl`](crate::Error::Gl) if the driver fails.
     pub fn render(&mut self, view: &View) -> Result<glow::Texture> {
         view.check_size(self.target.size())?;
-        let _state = StateGuard::new(&self.gl);
+        let _state = StateGuard::new(&self.gl)?;
         let from_clip = view.to_clip().as_dmat4().inverse().as_mat4();
         let (scale, shift) = if self.zero_to_one { (1.0, 0.0) } else { (2.0, 1.0) };
         Pass::new(LABEL, &self.program)

@@ -36,7 +36,7 @@ impl PowerMap {
     /// [`Error::Gl`](crate::Error::Gl) if the driver fails.
     pub fn read(&self) -> Result<Image<[f32; 4]>> {
         let gl = self.texture.gl();
-        let _state = StateGuard::new(gl);
+        let _state = StateGuard::new(gl)?;
         let power = self.texture.read(0);
         gl.check("reading a power map back")?;
         Ok(power)

@@ -40,7 +40,7 @@ impl RadiusMap {
     /// [`Error::Mismatch`] unless they are GL_TEXTURE_2D in GL_R32UI and GL_R8UI, of one size, with
     /// level 0 as their base and red where red belongs; [`Error::Gl`] if the driver can't draw to them.
     pub fn borrow(gl: &Gl, radii: glow::Texture, limited: Option<glow::Texture>) -> Result<Self> {
-        let _state = StateGuard::new(gl);
+        let _state = StateGuard::new(gl)?;
         let mut textures = vec![Texture::borrow(gl, radii)?];
         textures.extend(limited.map(|limited| Texture::borrow(gl, limited)).transpose()?);
         let size = textures[0].size();
@@ -82,7 +82,7 @@ impl RadiusMap {
     /// # Errors
     /// [`Error::Gl`] if the driver fails, as when the context is lost.
     pub fn read(&self) -> Result<Image<u32>> {
-        let _state = StateGuard::new(self.gl());
+        let _state = StateGuard::new(self.gl())?;
         let radii = self.target.texture().read(0);
         self.gl().check("reading a radius map back")?;
         Ok(radii)
@@ -93,7 +93,7 @@ impl RadiusMap {
     /// # Errors
     /// [`Error::Gl`] if the driver fails, as when the context is lost.
     pub fn read_limited(&self) -> Result<Option<Image<u8>>> {
-        let _state = StateGuard::new(self.gl());
+        let _state = StateGuard::new(self.gl())?;
         let mask = self.limited().map(|texture| texture.read(0));
         self.gl().check("reading a mask back")?;
         Ok(mask)

@@ -57,7 +57,7 @@ impl SurfaceMaps {
     pub fn borrow(gl: &Gl, view: View, surfaces: HostSurfaces) -> Result<Self> {
         use TextureFormat::{Rgb16Float, Rgb32Float, Rgba16Float, Rgba32Float};
 
-        let _state = StateGuard::new(gl);
+        let _state = StateGuard::new(gl)?;
         let position = Texture::borrow_as(gl, surfaces.position, "host's positions", &[Rgba32Float])?;
         let normals = [Rgba32Float, Rgba16Float, Rgb32Float, Rgb16Float];
         let normal = Texture::borrow_as(gl, surfaces.normal, "host's normals", &normals)?;
@@ -124,7 +124,7 @@ impl SurfaceMaps {
     #[cfg(feature = "scene")]
     pub(crate) fn set_albedo(&mut self, albedo: &Image<[f32; 4]>) -> Result<()> {
         let gl = self.albedo().gl();
-        let _state = StateGuard::new(gl);
+        let _state = StateGuard::new(gl)?;
         self.albedo().upload(albedo);
         gl.check("uploading reflectances")
     }
@@ -139,7 +139,7 @@ impl SurfaceMaps {
             });
         };
         let gl = texture.gl();
-        let _state = StateGuard::new(gl);
+        let _state = StateGuard::new(gl)?;
         let image = texture.read(0);
         gl.check("reading what the pixels show back")?;
         Ok(image)

@@ -50,7 +50,7 @@ impl Approximation {
     /// [`Error::TooLarge`](crate::Error::TooLarge), [`Error::Shader`](crate::Error::Shader), or
     /// [`Error::OutOfMemory`](crate::Error::OutOfMemory).
     pub fn half_density(gl: &Gl, density: &DensityMap, search: Search) -> Result<Self> {
-        let _state = StateGuard::new(gl);
+        let _state = StateGuard::new(gl)?;
         let size = (density.size() + 1) / 2;
         let half = Target::single(gl, Texture::new(gl, TextureFormat::R32Uint, size, 1)?)?
             .labelled(&["half the density"]);
@@ -76,7 +76,7 @@ impl Approximation {
     /// [`Error::TooLarge`](crate::Error::TooLarge), [`Error::Shader`](crate::Error::Shader), or
     /// [`Error::OutOfMemory`](crate::Error::OutOfMemory).
     pub fn grid(gl: &Gl, density: &DensityMap, search: Search, step: u32) -> Result<Self> {
-        let _state = StateGuard::new(gl);
+        let _state = StateGuard::new(gl)?;
         let settings = Settings { search, ..Settings::default() };
         let (size, format) = (density.size(), density.format());
         let first = First::Grid {
@@ -101,7 +101,7 @@ impl Approximation {
     /// # Errors
     /// As [`RadiusPipeline::render`].
     pub fn render(&mut self, density: &DensityMap) -> Result<()> {
-        let _state = StateGuard::new(&self.gl);
+        let _state = StateGuard::new(&self.gl)?;
         let (places, spacing, first_place, factor, summand) = match &mut self.first {
             First::HalfDensity { program, half, density: coarse, pipeline } => {
                 Pass::new(HALF_DENSITY, program)
@@ -137,7 +137,7 @@ impl Approximation {
     /// # Errors
     /// [`Error::Gl`](crate::Error::Gl) if the driver fails.
     pub fn read(&self) -> Result<Image<u32>> {
-        let _state = StateGuard::new(&self.gl);
+        let _state = StateGuard::new(&self.gl)?;
         let radii = self.radii.texture().read(0);
         self.gl.check("reading approximated radii back")?;
         Ok(radii)

@@ -26,7 +26,7 @@ impl PointPass {
     /// [`Error::TooLarge`](crate::Error::TooLarge), [`Error::Shader`](crate::Error::Shader), or
     /// [`Error::OutOfMemory`](crate::Error::OutOfMemory).
     pub fn new(gl: &Gl, view: &View) -> Result<Self> {
-        let _state = StateGuard::new(gl);
+        let _state = StateGuard::new(gl)?;
         let program = Program::new(gl, &Self::source())?;
         let target = Target::single(gl, Texture::new(gl, TextureFormat::R32Float, view.size(), 1)?)?
             .labelled(&["points"]);
@@ -47,7 +47,7 @@ impl PointPass {
     /// # Errors
     /// [`Error::Gl`](crate::Error::Gl) if the driver fails.
     pub fn run(&mut self, photons: &PhotonPoints) -> Result<()> {
-        let _state = StateGuard::new(&self.gl);
+        let _state = StateGuard::new(&self.gl)?;
         self.target.clear_floats(&[Vec4::ZERO]);
         for chunk in photons.chunks() {
             Pass::new(LABEL, &self.program)
@@ -62,7 +62,7 @@ impl PointPass {
     /// # Errors
     /// [`Error::Gl`](crate::Error::Gl) if the driver fails.
     pub fn read(&self) -> Result<Image<f32>> {
-        let _state = StateGuard::new(&self.gl);
+        let _state = StateGuard::new(&self.gl)?;
         let image = self.target.texture().read(0);
         self.gl.check("reading points back")?;
         Ok(image)

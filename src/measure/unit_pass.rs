@@ -74,7 +74,7 @@ impl UnitPass {
     /// # Errors
     /// [`Error::TooLarge`], [`Error::Shader`], or [`Error::OutOfMemory`].
     pub fn new(gl: &Gl, unit: Unit, size: UVec2) -> Result<Self> {
-        let _state = StateGuard::new(gl);
+        let _state = StateGuard::new(gl)?;
         let program = Program::new(gl, &unit.source())?;
         let target =
             Target::single(gl, Texture::new(gl, TextureFormat::R32Uint, size, 1)?)?.labelled(&["unit pass"]);
@@ -94,7 +94,7 @@ impl UnitPass {
                 got: text(density.size(), density.format()),
             });
         }
-        let _state = StateGuard::new(&self.gl);
+        let _state = StateGuard::new(&self.gl)?;
         let mut pass = Pass::new(self.unit.label(), &self.program).read("density", density.as_texture());
         if self.unit == Unit::Probe {
             pass = pass.set("map_size", density.size().as_ivec2());
@@ -108,7 +108,7 @@ impl UnitPass {
     /// # Errors
     /// [`Error::Gl`] if the driver fails.
     pub fn read(&self) -> Result<Image<u32>> {
-        let _state = StateGuard::new(&self.gl);
+        let _state = StateGuard::new(&self.gl)?;
         let image = self.target.texture().read(0);
         self.gl.check("reading a unit pass back")?;
         Ok(image)

@@ -68,15 +68,15 @@ impl FramePlanner {
     }
 
     /// Takes in the census of an earlier frame, if it has come, and decides on the next one.
-    pub(super) fn decide(&mut self, settings: &Settings, bounds: CountBounds) -> Order {
+    pub(super) fn decide(&mut self, settings: &Settings, bounds: CountBounds) -> Result<Order> {
         if self.readback.is_pending() {
-            let _state = StateGuard::new(&self.gl);
+            let _state = StateGuard::new(&self.gl)?;
             if let Some(photons) = self.readback.poll() {
                 self.census = Some(Census::counted(self.map_size, photons));
             }
         }
         self.decision = planner::decide(settings, self.map_size, self.census.as_ref(), bounds);
-        self.decision.settings.search.order
+        Ok(self.decision.settings.search.order)
     }
 
     /// Counts the photons of a frame's tiles and asks for them.
@@ -85,7 +85,7 @@ impl FramePlanner {
         if self.readback.is_pending() || density.bounds().total == 0 {
             return Ok(());
         }
-        let _state = StateGuard::new(&self.gl);
+        let _state = StateGuard::new(&self.gl)?;
         let pass = Pass::new(CENSUS, &self.program).set("map_size", self.map_size.as_ivec2());
         tables.read_by(pass, density).fill(&mut self.counts)?;
         self.readback.begin(&self.counts)?;

@@ -76,7 +76,7 @@ impl BounceMaps {
 
     fn draw(&mut self, place: Vec3, face: usize) -> Result<Image<u32>> {
         let map = self.cube.draw(place, face)?;
-        let _state = StateGuard::new(&self.gl);
+        let _state = StateGuard::new(&self.gl)?;
         let map = map.read(0);
         self.gl.check("reading a bounce map back")?;
         Ok(map)

@@ -65,7 +65,7 @@ pub(crate) struct CubeMap {
 impl CubeMap {
     /// Maps of `side` columns and rows, of which `border` on each edge lie beyond the cube's.
     pub(crate) fn new(gl: &Gl, scene: &Scene, side: u16, border: u16) -> Result<Self> {
-        let _state = StateGuard::new(gl);
+        let _state = StateGuard::new(gl)?;
         let [triangles, spheres] = sources();
         let programs = [Program::new(gl, &triangles)?, Program::new(gl, &spheres)?];
         let map = Texture::new(gl, TextureFormat::R32Uint, UVec2::splat(side.into()), 1)?;
@@ -86,7 +86,7 @@ impl CubeMap {
 
     /// One side of the cube around `place`.
     pub(crate) fn draw(&mut self, place: Vec3, face: usize) -> Result<&Texture> {
-        let _state = StateGuard::new(&self.gl);
+        let _state = StateGuard::new(&self.gl)?;
         let to_clip = self.to_clip(place, face);
         let (far, [to_corner, to_right, to_next_row]) = (self.far(place), self.rays(face));
         self.map.clear(&[0]);

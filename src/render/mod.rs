@@ -164,7 +164,7 @@ impl Renderer {
         let (of_bent, seen_through) = through(&self.bent);
         let (of_edges, _) = through(self.edges.places());
         self.light.seen_through = seen_through;
-        self.pipeline.clear_light();
+        self.pipeline.clear_light()?;
         let irradiance = self.pipeline.spread(&self.surfaces, &self.traced.points)?;
         let shaded = self.shade.shade(&self.surfaces, irradiance, &self.light)?;
         let irradiance = irradiance.read()?;

@@ -87,7 +87,7 @@ impl Reference {
             FirstBounce::Rays,
             progress,
         )?;
-        self.density.clear();
+        self.density.clear()?;
         self.density.add(&self.surfaces, &traced.points)?;
         // The counts are checked before they are believed.
         let power = self.density.power().unwrap_or_else(|| unreachable!("made without units"));

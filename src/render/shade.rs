@@ -38,7 +38,7 @@ pub(crate) struct ShadeStage {
 
 impl ShadeStage {
     pub(crate) fn new(gl: &Gl, size: UVec2) -> Result<Self> {
-        let _state = StateGuard::new(gl);
+        let _state = StateGuard::new(gl)?;
         let plane = || Texture::new(gl, TextureFormat::Rgba32Float, size, 1);
         Ok(Self {
             gl: gl.clone(),
@@ -56,16 +56,21 @@ impl ShadeStage {
         irradiance: &IrradianceMap,
         light: &TracedLight,
     ) -> Result<Shaded> {
-        self.set_light(&light.direct, &light.seen_through);
+        self.set_light(&light.direct, &light.seen_through)?;
         self.draw(surfaces, irradiance, 1.0)?;
         self.read()
     }
 
     /// Takes in light as [`TracedLight`] holds it.
-    pub(crate) fn set_light(&mut self, direct: &Image<[f32; 4]>, seen_through: &Image<[f32; 4]>) {
-        let _state = StateGuard::new(&self.gl);
+    pub(crate) fn set_light(
+        &mut self,
+        direct: &Image<[f32; 4]>,
+        seen_through: &Image<[f32; 4]>,
+    ) -> Result<()> {
+        let _state = StateGuard::new(&self.gl)?;
         self.direct.upload(direct);
         self.seen_through.upload(seen_through);
+        Ok(())
     }
 
     /// Draws the picture with `scale` times the irradiance.
@@ -75,7 +80,7 @@ impl ShadeStage {
         irradiance: &IrradianceMap,
         scale: f32,
     ) -> Result<()> {
-        let _state = StateGuard::new(&self.gl);
+        let _state = StateGuard::new(&self.gl)?;
         Pass::new(LABEL, &self.program)
             .read("irradiance", irradiance.as_texture())
             .read("albedo", surfaces.albedo())
@@ -88,7 +93,7 @@ impl ShadeStage {
 
     /// What was drawn, read back; waits for the GPU.
     pub(crate) fn read(&self) -> Result<Shaded> {
-        let _state = StateGuard::new(&self.gl);
+        let _state = StateGuard::new(&self.gl)?;
         let [beauty, indirect] = [0, 1].map(|plane: usize| self.target.textures()[plane].read(0));
         self.gl.check("reading a picture back")?;
         Ok(Shaded { beauty, indirect })

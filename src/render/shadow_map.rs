@@ -54,7 +54,7 @@ pub(crate) struct ShadowMaps {
 impl ShadowMaps {
     pub(crate) fn new(gl: &Gl, scene: &Scene, size: UVec2) -> Result<Self> {
         let cube = CubeMap::new(gl, scene, SIDE, BORDER)?;
-        let _state = StateGuard::new(gl);
+        let _state = StateGuard::new(gl)?;
         let texels = primitives(scene);
         let primitives =
             Texture::new(gl, TextureFormat::Rgba32Float, texels.size(), 1)?.labelled("primitives");
@@ -118,7 +118,7 @@ impl ShadowMaps {
         places: &[LightPlace],
         show: &mut dyn FnMut(f64),
     ) -> Result<Image<[f32; 4]>> {
-        let _state = StateGuard::new(&self.gl);
+        let _state = StateGuard::new(&self.gl)?;
         self.irradiance.clear_floats(&[Vec4::ZERO]);
         for (index, light) in places.iter().enumerate() {
             for face in (0..FACES).filter(|&face| shines_through(light, face)) {

@@ -25,7 +25,7 @@ impl Renderer {
     /// # Errors
     /// As [`IrradiancePipeline::count`].
     pub fn count(&mut self) -> Result<()> {
-        self.pipeline.clear_photons();
+        self.pipeline.clear_photons()?;
         self.pipeline.count(&self.surfaces, &self.traced.points).map(drop)
     }
 
@@ -58,7 +58,7 @@ impl Renderer {
     /// # Errors
     /// As [`IrradiancePipeline::spread`].
     pub fn spread(&mut self) -> Result<&IrradianceMap> {
-        self.pipeline.clear_light();
+        self.pipeline.clear_light()?;
         self.pipeline.spread(&self.surfaces, &self.traced.points)
     }
 

@@ -62,7 +62,7 @@ pub(crate) struct SurfaceStage {
 
 impl SurfaceStage {
     pub(crate) fn new(gl: &Gl) -> Result<Self> {
-        let _state = StateGuard::new(gl);
+        let _state = StateGuard::new(gl)?;
         let [triangles, spheres] = sources();
         Ok(Self {
             gl: gl.clone(),
@@ -73,7 +73,7 @@ impl SurfaceStage {
 
     /// What each pixel of the view shows.
     pub(crate) fn draw(&self, scene: &Scene, view: View) -> Result<SurfaceMaps> {
-        let _state = StateGuard::new(&self.gl);
+        let _state = StateGuard::new(&self.gl)?;
         let mut maps = SurfaceMaps::new(&self.gl, view)?;
         let triangles = Vertices::upload(&self.gl, &corners(scene, view.position()), &[3, 3, 3, 1, 1])?;
         let triangles = triangles.labelled(TRIANGLES);

@@ -80,8 +80,8 @@ impl Light {
         let depth = HostDepth { texture: name, reversed: false, zero_to_one: false };
         let borrowed = HostSurfaces { position: name, normal: name };
         let new_photons = HostPicture::photons(9);
-        pipeline.clear();
-        splat.clear();
+        pipeline.clear().unwrap();
+        splat.clear().unwrap();
         let standing = failure(tables.gather(surfaces, counted_in_units.flux().unwrap()));
         tables.forget_camera();
         vec![

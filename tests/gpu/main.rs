@@ -8,6 +8,7 @@ mod approximate;
 mod bounce_map;
 mod calls;
 mod certificate;
+mod compatible;
 mod density;
 mod direct;
 mod driver;

@@ -107,10 +107,10 @@ pub unsafe extern "C" fn varikernel_irradiance_render(
             }
             let (surfaces, photons) = frame.borrow(gl, stages.size, &mut stages.positions)?;
             match kept {
-                Kept::Nothing => pipeline.clear(),
+                Kept::Nothing => pipeline.clear()?,
                 Kept::Camera => {
-                    pipeline.clear_photons();
-                    pipeline.clear_light();
+                    pipeline.clear_photons()?;
+                    pipeline.clear_light()?;
                 }
                 Kept::All => (),
             }

@@ -1,12 +1,17 @@
 //! A host's OpenGL state around a call: saved and put back, or default before and after.
 
+mod obstacles;
+mod row;
 mod table;
 
-pub(super) use table::{DRAW_BUFFERS, UNITS};
+pub(super) use row::{DRAW_BUFFERS, UNITS};
 
-use table::{DEPTH_TESTS, PASSES, Row, STENCIL_TESTS, Values};
+use obstacles::Feedback;
+use row::{Row, Values};
+use table::{DEPTH_TESTS, PASSES, STENCIL_TESTS};
 
 use super::Gl;
+use crate::error::Result;
 
 /// How the library treats a host's OpenGL state; a property of a [`Gl`] handle and of all that is made from
 /// it.
@@ -33,6 +38,8 @@ pub(crate) struct StateGuard {
     gl: Gl,
     rows: &'static [Row],
     before: Before,
+    /// The host's transform feedback, which goes on when all is as it was.
+    feedback: Option<Feedback>,
 }
 
 /// What there was before a guard.
@@ -50,32 +57,41 @@ enum Before {
 
 impl StateGuard {
     /// Saves the host's state and sets what every pass and transfer relies on.
-    pub(crate) fn new(gl: &Gl) -> Self {
+    ///
+    /// # Errors
+    /// [`Error::HostState`](crate::Error::HostState), with nothing changed, under what no call can work.
+    pub(crate) fn new(gl: &Gl) -> Result<Self> {
         gl.forget_errors();
         let guards = &gl.inner.state_guards;
-        let before = if guards.get() > 0 { Before::Ours } else { Before::of(gl, PASSES) };
+        let is_outermost = guards.get() == 0;
+        let watches = is_outermost && !gl.is_lost() && gl.state_policy() == StatePolicy::Restore;
+        let feedback = if watches { obstacles::none(gl)? } else { None };
+        let before = if is_outermost { Before::of(gl, PASSES) } else { Before::Ours };
+        if is_outermost {
+            gl.count_groups(watches);
+        }
         guards.set(guards.get() + 1);
         if gl.is_lost() {
-            return Self { gl: gl.clone(), rows: PASSES, before: Before::Nothing };
+            return Ok(Self { gl: gl.clone(), rows: PASSES, before: Before::Nothing, feedback });
         }
-        for (row, instance) in instances(PASSES) {
+        for row in PASSES {
             let is_there = matches!(before, Before::Defaults) && row.default == row.relied_on;
             if let Some(values) = row.relied_on.filter(|_| !is_there) {
-                row.write(gl, instance, values);
+                row.write_all(gl, values);
             }
         }
-        Self { gl: gl.clone(), rows: PASSES, before }
+        Ok(Self { gl: gl.clone(), rows: PASSES, before, feedback })
     }
 
     /// Saves what a test of the host's depth touches, inside of a guard of the rest.
     pub(super) fn of_depth_tests(gl: &Gl) -> Self {
-        Self { gl: gl.clone(), rows: DEPTH_TESTS, before: Before::of(gl, DEPTH_TESTS) }
+        Self { gl: gl.clone(), rows: DEPTH_TESTS, before: Before::of(gl, DEPTH_TESTS), feedback: None }
     }
 
     /// Saves what a test of the host's stencil touches, inside of a guard of the rest, while a framebuffer
     /// with stencil is drawn to.
     pub(super) fn of_stencil_tests(gl: &Gl) -> Self {
-        Self { gl: gl.clone(), rows: STENCIL_TESTS, before: Before::of(gl, STENCIL_TESTS) }
+        Self { gl: gl.clone(), rows: STENCIL_TESTS, before: Before::of(gl, STENCIL_TESTS), feedback: None }
     }
 }
 
@@ -84,7 +100,7 @@ impl Before {
         match gl.state_policy() {
             _ if gl.is_lost() => Self::Nothing,
             StatePolicy::Restore => {
-                Self::Saved(instances(rows).map(|(row, instance)| row.read(gl, instance)).collect())
+                Self::Saved(instances(gl, rows).map(|(row, instance)| row.read(gl, instance)).collect())
             }
             StatePolicy::Defaults => Self::Defaults,
         }
@@ -93,39 +109,43 @@ impl Before {
 
 impl Drop for StateGuard {
     fn drop(&mut self) {
+        let gl = &self.gl;
         match &self.before {
             Before::Nothing => (),
-            _ if self.gl.is_lost() => (),
+            _ if gl.is_lost() => (),
             Before::Saved(values) => {
-                for ((row, instance), &values) in instances(self.rows).rev().zip(values.iter().rev()) {
-                    row.write(&self.gl, instance, values);
+                for ((row, instance), &values) in instances(gl, self.rows).rev().zip(values.iter().rev()) {
+                    row.write(gl, instance, values);
                 }
             }
             Before::Defaults => {
-                for (row, instance) in instances(self.rows).rev() {
+                for row in self.rows.iter().rev() {
                     if let Some(values) = row.default {
-                        row.write(&self.gl, instance, values);
+                        row.write_all(gl, values);
                     }
                 }
             }
             Before::Ours => {
-                for (row, instance) in instances(self.rows) {
+                for row in self.rows {
                     if let Some(values) = row.relied_on {
-                        row.write(&self.gl, instance, values);
+                        row.write_all(gl, values);
                     }
                 }
             }
         }
+        if let Some(feedback) = self.feedback.take() {
+            feedback.resume(gl);
+        }
         if std::ptr::eq(self.rows, PASSES) {
-            let guards = &self.gl.inner.state_guards;
+            let guards = &gl.inner.state_guards;
             guards.set(guards.get() - 1);
         }
     }
 }
 
 /// Each row with each of its instances.
-fn instances(rows: &'static [Row]) -> impl DoubleEndedIterator<Item = (&'static Row, u32)> {
-    rows.iter().flat_map(|row| (0..row.instances).map(move |instance| (row, instance)))
+fn instances(gl: &Gl, rows: &'static [Row]) -> impl DoubleEndedIterator<Item = (&'static Row, Option<u32>)> {
+    rows.iter().flat_map(move |row| row.instances(gl).map(move |instance| (row, instance)))
 }
 
 #[cfg(test)]

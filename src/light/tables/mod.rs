@@ -119,7 +119,7 @@ impl TablesStage {
     /// [`Error::TooLarge`](crate::Error::TooLarge); [`Error::Shader`](crate::Error::Shader) if the driver
     /// refuses a shader; [`Error::Gl`](crate::Error::Gl) when memory runs out.
     pub fn new(gl: &Gl, size: UVec2) -> Result<Self> {
-        let _state = StateGuard::new(gl);
+        let _state = StateGuard::new(gl)?;
         let [points, fine, coarse, pool, gather, smooth, widths] = sources();
         let targets = &mut Targets::new(gl, &Self::shapes(size))?;
         Ok(Self {
@@ -186,7 +186,7 @@ impl TablesStage {
         surfaces.check_size(self.maps.irradiance.size())?;
         let [low, high] = flux.as_textures();
         surfaces.check_size(low.size())?;
-        let _state = StateGuard::new(&self.gl);
+        let _state = StateGuard::new(&self.gl)?;
         self.faces.update(surfaces, &self.one)?;
 
         Pass::new(POINTS, &self.points_program)

@@ -19,7 +19,7 @@ impl RadiusPipeline {
     /// [`Error::QueryRunning`] while a query of the host counts samples.
     pub fn certify(&mut self, density: &DensityMap) -> Result<Certificate> {
         let plan = self.prepare_certificate(density)?;
-        let _state = StateGuard::new(&self.gl);
+        let _state = StateGuard::new(&self.gl)?;
         self.certifier.certify(density, plan, &self.tables, self.search.radii())
     }
 
@@ -33,7 +33,7 @@ impl RadiusPipeline {
         if radii.size() != self.size {
             return Err(Error::size("radius map", self.size, radii.size()));
         }
-        let _state = StateGuard::new(&self.gl);
+        let _state = StateGuard::new(&self.gl)?;
         self.certifier.certify(density, plan, &self.tables, radii)
     }
 
@@ -59,7 +59,7 @@ impl RadiusPipeline {
         }
         let plan = Certificate::plan(&self.settings, density)?;
         if built.is_empty() {
-            let _state = StateGuard::new(&self.gl);
+            let _state = StateGuard::new(&self.gl)?;
             self.tables.build(density, plan, Rectangle::whole(self.size))?;
         }
         Ok(plan)

@@ -108,7 +108,7 @@ impl RadiusPipeline {
             return Ok(self.search.radii());
         }
         let frame = Frame { changed, mask: frame.mask.or(self.every_pixel.as_ref()), ..*frame };
-        let _state = StateGuard::new(&self.gl);
+        let _state = StateGuard::new(&self.gl)?;
         self.searched = None;
         if built.is_empty() {
             self.search.find_nothing(&frame)?;
@@ -151,7 +151,7 @@ impl RadiusPipeline {
                 remedy: "give the map of all photons anew (Changed::Everything)".to_owned(),
             });
         }
-        let _state = StateGuard::new(&self.gl);
+        let _state = StateGuard::new(&self.gl)?;
         self.built = None;
         match changed {
             // No box can hold a photon, so that none will be counted.
@@ -169,7 +169,7 @@ impl RadiusPipeline {
     fn plan_frame(&mut self, frame: &Frame<'_>) -> Result<()> {
         let bounds = self.bounds_with(frame);
         let Some(planner) = &mut self.planner else { return Ok(()) };
-        let order = planner.decide(&self.settings, bounds);
+        let order = planner.decide(&self.settings, bounds)?;
         self.set_order(order)
     }
 

@@ -89,7 +89,7 @@ impl RadiusPipeline {
         settings.validate()?;
         let passes = driver_limits::passes(gl.info(), &settings)?;
         check_fits(gl.info(), size)?;
-        let _state = StateGuard::new(gl);
+        let _state = StateGuard::new(gl)?;
         let pipeline = Self {
             gl: gl.clone(),
             settings,
@@ -129,7 +129,7 @@ impl RadiusPipeline {
         } else {
             settings.validate()?;
             let passes = driver_limits::passes(self.gl.info(), &settings)?;
-            let _state = StateGuard::new(&self.gl);
+            let _state = StateGuard::new(&self.gl)?;
             let search = RadiusSearch::new(&self.gl, self.size, self.density_format, &settings, passes)?;
             self.gl.check("setting up a search")?;
             search

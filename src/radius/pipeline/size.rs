@@ -84,7 +84,7 @@ impl RadiusPipeline {
             return self.gl.current().map(drop);
         }
         check_fits(self.gl.info(), size)?;
-        let _state = StateGuard::new(&self.gl);
+        let _state = StateGuard::new(&self.gl)?;
         let mut shapes = Tables::shapes(size, &self.settings);
         let resting = self.resting.iter().map(|(_, search)| search);
         for search in [&self.search].into_iter().chain(resting) {

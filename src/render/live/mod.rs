@@ -159,7 +159,7 @@ impl Live {
             self.emitted = self.kept.emitted();
             self.recounts = self.emitted > 0;
             self.steps = 0;
-            self.pipeline.clear();
+            self.pipeline.clear()?;
             self.inspector.forget();
         }
         if let Some(shade) = shade {
@@ -201,7 +201,7 @@ impl Live {
         let seen: Vec<_> = indirect.iter().copied().filter(|point| point.may_be_seen(&view)).collect();
         if self.recounts {
             points.replace(&kept.seen(&view))?;
-            pipeline.clear_photons();
+            pipeline.clear_photons()?;
             pipeline.count(&shown.surfaces, points)?;
             self.recounts = false;
         }
@@ -215,7 +215,7 @@ impl Live {
         lap("mirrors and glass");
         points.replace(&seen)?;
         let irradiance = pipeline.add(&shown.surfaces, points)?;
-        self.shade.set_light(&shown.direct.image(), shown.through.image());
+        self.shade.set_light(&shown.direct.image(), shown.through.image())?;
         self.shade.draw(&shown.surfaces, irradiance, scale)?;
         self.steps += 1;
         self.traced += 1;

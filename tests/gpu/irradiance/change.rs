@@ -31,7 +31,7 @@ fn other_settings_give_what_a_new_pipeline_would_and_a_failure_leaves_the_old_on
         pipeline.change(settings(KernelRadius::Fixed(97))).unwrap_err();
         assert_eq!(*pipeline.settings(), asked(way));
         assert_eq!(gl.texture_bytes(), held);
-        pipeline.clear_light();
+        pipeline.clear_light().unwrap();
         assert_eq!(pipeline.spread(&stand.surfaces, &points).unwrap().read().unwrap(), expected);
     }
     // Another question is another search, of the photons that are counted.
@@ -69,7 +69,7 @@ fn tables_count_anew_and_give_what_a_new_pipeline_would() {
             (pipeline.flux().is_some(), pipeline.power().is_some()),
             (asked == tables, asked == splat)
         );
-        pipeline.clear();
+        pipeline.clear().unwrap();
         let found = pipeline.add(&stand.surfaces, &points).unwrap().read().unwrap();
         let mut fresh = IrradiancePipeline::new(&gl, size, asked).unwrap();
         assert!(fresh.render(&stand.surfaces, &points).unwrap().read().unwrap() == found, "{asked:?}");

@@ -5,7 +5,7 @@ use varikernel::gl::TextureFormat;
 use varikernel::reference::{self, Radii};
 use varikernel::settings::{Edges, Laboratory, Method, Order, SatBuild, Search, Settings, Storage};
 use varikernel::{
-    Changed, CountBounds, DensityMap, Error, Frame, Image, Mask, MaskMaker, RadiusMap, RadiusPipeline,
+    Changed, CountBounds, DensityMap, Error, Frame, Gl, Image, Mask, MaskMaker, RadiusMap, RadiusPipeline,
 };
 
 use super::host::fail_at_each;
@@ -36,6 +36,13 @@ pub(super) fn map(watch: &Watch<'_>) -> DensityMap {
 
 pub(super) fn pipeline(watch: &Watch<'_>) -> RadiusPipeline {
     RadiusPipeline::new(&watch.gl, SIZE, TextureFormat::R32Uint, bracketed()).unwrap()
+}
+
+/// A map of the library's own, and its pipeline.
+pub(super) fn uploaded(gl: &Gl) -> (DensityMap, RadiusPipeline) {
+    let map = DensityMap::upload(gl, &density(), CountBounds::of(&density(), question())).unwrap();
+    let pipeline = RadiusPipeline::new(gl, SIZE, map.format(), bracketed()).unwrap();
+    (map, pipeline)
 }
 
 pub(super) fn all(watch: &Watch<'_>) {

@@ -6,18 +6,20 @@ use std::ffi::{CStr, c_void};
 
 use varikernel::{Gl, context};
 
+use crate::shaders::is_core;
+
 /// Commands of OpenGL 3.3 core that glow does not have, with their types.
 macro_rules! commands {
-    ($($field:ident = $name:literal: ($($argument:ty),*),)*) => {
+    ($($field:ident = $name:literal: ($($argument:ty),*) $(-> $result:ty)?,)*) => {
         pub(super) struct Commands {
-            $(pub(super) $field: unsafe extern "system" fn($($argument),*),)*
+            $(pub(super) $field: unsafe extern "system" fn($($argument),*) $(-> $result)?,)*
         }
 
         impl Commands {
             fn of(addresses: &BTreeMap<String, usize>) -> Self {
                 Self {
                     $($field: {
-                        type Command = unsafe extern "system" fn($($argument),*);
+                        type Command = unsafe extern "system" fn($($argument),*) $(-> $result)?;
                         let address = std::ptr::with_exposed_provenance::<c_void>(addresses[$name]);
                         assert!(!address.is_null(), $name);
                         // SAFETY: this is the address of the command of that name, which has this type.
@@ -31,6 +33,8 @@ macro_rules! commands {
 
 commands! {
     get_booleani_v = "glGetBooleani_v": (u32, u32, *mut u8),
+    is_enabledi = "glIsEnabledi": (u32, u32) -> u8,
+    get_doublev = "glGetDoublev": (u32, *mut f64),
     get_queryiv = "glGetQueryiv": (u32, u32, *mut i32),
     get_vertex_attrib_iiv = "glGetVertexAttribIiv": (u32, u32, *mut i32),
     get_vertex_attrib_iv = "glGetVertexAttribiv": (u32, u32, *mut i32),
@@ -46,16 +50,35 @@ commands! {
     provoking_vertex = "glProvokingVertex": (u32),
     clamp_color = "glClampColor": (u32, u32),
     logic_op = "glLogicOp": (u32),
+    begin_conditional_render = "glBeginConditionalRender": (u32, u32),
+    end_conditional_render = "glEndConditionalRender": (),
+    // Newer than OpenGL 3.3.
+    get_floati_v = "glGetFloati_v": (u32, u32, *mut f32),
+    get_doublei_v = "glGetDoublei_v": (u32, u32, *mut f64),
+    clip_control = "glClipControl": (u32, u32),
+    gen_program_pipelines = "glGenProgramPipelines": (i32, *mut u32),
+    bind_program_pipeline = "glBindProgramPipeline": (u32),
 }
 
 /// A context and all that a host may do with it.
 pub(super) struct Host {
     pub(super) gl: Gl,
     pub(super) commands: Commands,
+    /// Whether the library is given the commands of OpenGL 3.3 core alone.
+    pub(super) is_strict: bool,
 }
 
 impl Host {
     pub(super) fn new(choice: &context::DeviceChoice) -> Self {
+        Self::open(choice, false)
+    }
+
+    /// With a library that knows OpenGL 3.3 core alone.
+    pub(super) fn strict(choice: &context::DeviceChoice) -> Self {
+        Self::open(choice, true)
+    }
+
+    fn open(choice: &context::DeviceChoice, is_strict: bool) -> Self {
         let (candidates, _) = context::candidates();
         let candidate = candidates.iter().find(|candidate| candidate.choice == *choice).unwrap();
         let mut addresses = BTreeMap::new();
@@ -63,12 +86,13 @@ impl Host {
         // failed.
         let gl = unsafe {
             candidate.open_through(|name, real| {
-                addresses.insert(name.to_str().unwrap().to_owned(), real.expose_provenance());
-                failing(name, real)
+                let known = name.to_str().unwrap();
+                addresses.insert(known.to_owned(), real.expose_provenance());
+                if is_strict && !is_core(known) { std::ptr::null() } else { failing(name, real) }
             })
         }
         .unwrap();
-        Self { gl, commands: Commands::of(&addresses) }
+        Self { gl, commands: Commands::of(&addresses), is_strict }
     }
 }
 

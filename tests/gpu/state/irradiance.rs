@@ -38,7 +38,7 @@ pub(super) fn all(watch: &Watch<'_>) {
         );
         pipeline.add(&surfaces, &photons).unwrap();
         watch.unchanged("IrradiancePipeline::add");
-        pipeline.clear();
+        pipeline.clear().unwrap();
         watch.unchanged("IrradiancePipeline::clear");
     }
     stages(watch, &surfaces, &photons);
@@ -126,7 +126,7 @@ fn stages(watch: &Watch<'_>, surfaces: &SurfaceMaps, photons: &PhotonPoints) {
     watch.unchanged("GatherStage::new");
     gather.gather(surfaces, density.power().unwrap(), radius).unwrap();
     watch.unchanged("GatherStage::gather");
-    density.clear();
-    splat.clear();
+    density.clear().unwrap();
+    splat.clear().unwrap();
     watch.unchanged("DensityStage::clear and SplatStage::clear");
 }

@@ -1,4 +1,5 @@
-//! Every state of OpenGL 3.3 core that a host may hold: the tables of chapter 6 of its specification.
+//! Every state of OpenGL 3.3 core that a host may hold: the tables of chapter 6 of its specification. Those of
+//! later versions that matter here come with them where there are any.
 
 use std::ffi::c_void;
 
@@ -95,7 +96,6 @@ const INTEGERS: &[(&str, u32, usize)] = &[
 
 /// Outside of objects: f32.
 const FLOATS: &[(&str, u32, usize)] = &[
-    ("transformation: depth range", glow::DEPTH_RANGE, 2),
     ("rasteriser: point size", glow::POINT_SIZE, 1),
     ("rasteriser: point fade threshold", glow::POINT_FADE_THRESHOLD_SIZE, 1),
     ("rasteriser: line width", glow::LINE_WIDTH, 1),
@@ -253,6 +253,10 @@ impl Host {
                 let blend = glow.get_parameter_indexed_i32(glow::BLEND, index);
                 states.push((format!("blending: of draw buffer {index}"), wide(&[blend])));
             }
+            let mut range = [0_f64; 2];
+            (self.commands.get_doublev)(glow::DEPTH_RANGE, range.as_mut_ptr());
+            let range = range.map(|limit| limit.to_bits().cast_signed());
+            states.push(("transformation: depth range".to_owned(), range.to_vec()));
             let mask = glow.get_parameter_indexed_i32(glow::SAMPLE_MASK_VALUE, 0);
             states.push(("multisampling: mask".to_owned(), wide(&[mask])));
             for (target, count, parameters) in INDEXED_BUFFERS {
@@ -276,6 +280,9 @@ impl Host {
                 states.push((format!("query: {query:#06x}"), wide(&[name])));
             }
             self.units(&mut states);
+            if self.is_newer() {
+                states.extend(self.snapshot_of_newer());
+            }
             assert_eq!(glow.get_error(), glow::NO_ERROR, "the snapshot asks for what there is");
         }
         states

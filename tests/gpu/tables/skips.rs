@@ -40,7 +40,7 @@ fn where_nothing_changed_nothing_is_drawn() {
     assert!(draws(&mut pipeline, &mut calls) == (0, light.clone()));
 
     let (kept, again) = {
-        pipeline.clear_light();
+        pipeline.clear_light().unwrap();
         draws(&mut pipeline, &mut calls)
     };
     assert!(kept > 0, "{:?}", calls.all());
@@ -83,7 +83,7 @@ fn tiles_out_of_reach_of_photons_are_dark_as_their_definition_is() {
     let dark = found.values().iter().filter(|pixel| pixel.iter().all(|value| *value <= 0.0)).count();
     assert!(dark > 100 * 200, "{dark}");
     // What was lit before is dark when photons are elsewhere.
-    density.clear();
+    density.clear().unwrap();
     let elsewhere: Vec<_> = (0..400).map(|index| at(240 + index % 7, 90 + index % 11)).collect();
     points.upload(&elsewhere).unwrap();
     density.add(&surfaces, &points).unwrap();

@@ -1,0 +1,186 @@
+//! Commands that glow lacks. Those beyond OpenGL 3.3 serve only to put a host's state back.
+
+use std::ffi::{CStr, c_void};
+
+use glow::HasContext as _;
+
+use super::Gl;
+
+type GetBooleans = unsafe extern "system" fn(parameter: u32, index: u32, values: *mut u8);
+type IsEnabled = unsafe extern "system" fn(capability: u32, index: u32) -> u8;
+type GetDoubles = unsafe extern "system" fn(parameter: u32, values: *mut f64);
+type GetIndexedFloats = unsafe extern "system" fn(parameter: u32, index: u32, values: *mut f32);
+type GetIndexedDoubles = unsafe extern "system" fn(parameter: u32, index: u32, values: *mut f64);
+type ClipControl = unsafe extern "system" fn(origin: u32, depth: u32);
+type BeginConditionalRender = unsafe extern "system" fn(query: u32, mode: u32);
+
+/// Commands, where the loader has them.
+#[derive(Debug, Default)]
+pub(super) struct Commands {
+    pub(super) get_booleans: Option<GetBooleans>,
+    pub(super) get_doubles: Option<GetDoubles>,
+    pub(super) is_enabled: Option<IsEnabled>,
+    pub(super) begin_conditional_render: Option<BeginConditionalRender>,
+    /// OpenGL 4.1: viewports, depth ranges and scissor tests by index.
+    pub(super) viewports: Option<Viewports>,
+    /// OpenGL 4.5.
+    pub(super) clip_control: Option<ClipControl>,
+    /// OpenGL 4.0: blend factors and equations of each draw buffer.
+    pub(super) blends_by_buffer: bool,
+    /// OpenGL 4.0: transform feedback that pauses.
+    pub(super) pauses_feedback: bool,
+    /// KHR_debug, or OpenGL 4.3: passes and objects can be named.
+    pub(super) names_things: bool,
+}
+
+/// What reads the state of one viewport.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Viewports {
+    pub(super) get_floats: GetIndexedFloats,
+    pub(super) get_doubles: GetIndexedDoubles,
+}
+
+/// The command of that name, as a pointer to a function of the given type.
+macro_rules! command {
+    ($loader:ident, $name:literal, $type:ty) => {{
+        let address = $loader($name);
+        // SAFETY: the caller of `Gl::from_loader` guarantees that this is the address of the command, which has
+        // this type.
+        (!address.is_null()).then(|| unsafe { std::mem::transmute::<*const c_void, $type>(address) })
+    }};
+}
+
+impl Commands {
+    /// Those that a loader has, of a context that is current.
+    pub(super) fn load(loader: &mut impl FnMut(&CStr) -> *const c_void) -> Self {
+        let mut all = |names: &[&CStr]| names.iter().all(|name| !loader(name).is_null());
+        let names_things = all(&[c"glPushDebugGroup", c"glPopDebugGroup", c"glObjectLabel"]);
+        let blends_by_buffer = all(&[c"glBlendFuncSeparatei", c"glBlendEquationSeparatei"]);
+        let pauses_feedback = all(&[c"glPauseTransformFeedback", c"glResumeTransformFeedback"]);
+        let sets_viewports = all(&[c"glViewportArrayv", c"glDepthRangeArrayv"]);
+        let get_floats = command!(loader, c"glGetFloati_v", GetIndexedFloats);
+        let get_doubles = command!(loader, c"glGetDoublei_v", GetIndexedDoubles);
+        let viewports = get_floats.zip(get_doubles).filter(|_| sets_viewports);
+        Self {
+            get_booleans: command!(loader, c"glGetBooleani_v", GetBooleans),
+            get_doubles: command!(loader, c"glGetDoublev", GetDoubles),
+            is_enabled: command!(loader, c"glIsEnabledi", IsEnabled),
+            begin_conditional_render: command!(loader, c"glBeginConditionalRender", BeginConditionalRender),
+            viewports: viewports.map(|(get_floats, get_doubles)| Viewports { get_floats, get_doubles }),
+            clip_control: command!(loader, c"glClipControl", ClipControl),
+            blends_by_buffer,
+            pauses_feedback,
+            names_things,
+        }
+    }
+
+    /// Where there is no loader: only what glow has.
+    pub(super) fn of_glow() -> Self {
+        Self { names_things: true, ..Self::default() }
+    }
+
+    /// Without those that the context is too old for: a loader may know commands of any version.
+    pub(super) fn of_version(mut self, glow: &glow::Context) -> Self {
+        let version = glow.version();
+        let is_since = |major, minor| (version.major, version.minor) >= (major, minor);
+        self.viewports = self.viewports.filter(|_| is_since(4, 1));
+        self.clip_control = self.clip_control.filter(|_| is_since(4, 5));
+        self.blends_by_buffer &= is_since(4, 0);
+        self.pauses_feedback &= is_since(4, 0);
+        self.names_things &= glow.supports_debug();
+        // Without a query it does nothing but say so, unless conditional rendering goes on.
+        self.begin_conditional_render = self.begin_conditional_render.filter(|begin| {
+            // SAFETY: the context is current; the command takes any values.
+            unsafe {
+                begin(0, glow::QUERY_WAIT);
+                glow.get_error() == glow::INVALID_VALUE
+            }
+        });
+        self
+    }
+}
+
+/// What a context has more than OpenGL 3.3 core does, as far as a host's state is concerned.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Extent {
+    /// How many viewports there are, if they have an index.
+    pub(super) viewports: u32,
+    /// Whether it has the state of OpenGL before 3.1.
+    pub(super) is_compatible: bool,
+}
+
+impl Extent {
+    pub(super) fn of(glow: &glow::Context, commands: &Commands) -> Self {
+        // SAFETY: the context is current, and of a version that has these states.
+        unsafe {
+            let viewports = commands.viewports.map(|_| glow.get_parameter_i32(glow::MAX_VIEWPORTS));
+            let profile = glow.get_parameter_i32(glow::CONTEXT_PROFILE_MASK).cast_unsigned();
+            Self {
+                viewports: viewports.map_or(0, i32::cast_unsigned),
+                is_compatible: profile & glow::CONTEXT_COMPATIBILITY_PROFILE_BIT != 0,
+            }
+        }
+    }
+}
+
+impl Gl {
+    pub(super) fn commands(&self) -> &Commands {
+        &self.inner.commands
+    }
+
+    pub(super) fn extent(&self) -> Extent {
+        self.inner.extent
+    }
+
+    /// The colour mask of draw buffer `index`.
+    pub(super) fn color_mask(&self, index: u32) -> [bool; 4] {
+        let mut mask = [0_u8; 4];
+        match self.commands().get_booleans {
+            // SAFETY: GL_COLOR_WRITEMASK has four values, and the mask has room for them.
+            Some(get) => unsafe { get(glow::COLOR_WRITEMASK, index, mask.as_mut_ptr()) },
+            // SAFETY: the context is current; the mask of buffer 0 has four values.
+            None => return unsafe { self.glow().get_parameter_bool_array::<4>(glow::COLOR_WRITEMASK) },
+        }
+        mask.map(|value| value != 0)
+    }
+
+    /// Whether a capability is on, of a draw buffer or viewport if it is one of those.
+    pub(super) fn is_enabled(&self, capability: u32, index: Option<u32>) -> bool {
+        // SAFETY: the context is current; blending has one value for each index, which OpenGL converts.
+        unsafe {
+            match (self.commands().is_enabled, index) {
+                (Some(is_enabled), Some(index)) => is_enabled(capability, index) != 0,
+                (None, Some(index)) => self.glow().get_parameter_indexed_i32(capability, index) != 0,
+                (_, None) => self.glow().is_enabled(capability),
+            }
+        }
+    }
+
+    /// Of a viewport, or of all.
+    pub(super) fn depth_range(&self, viewport: Option<u32>) -> [f64; 2] {
+        let mut range = [0.0_f64; 2];
+        let commands = self.commands();
+        // SAFETY: the context is current; a depth range has two values.
+        unsafe {
+            match (commands.viewports.zip(viewport), commands.get_doubles) {
+                (Some((commands, index)), _) => {
+                    (commands.get_doubles)(glow::DEPTH_RANGE, index, range.as_mut_ptr());
+                }
+                (None, Some(get)) => get(glow::DEPTH_RANGE, range.as_mut_ptr()),
+                (None, None) => {
+                    let mut rounded = [0_f32; 2];
+                    self.glow().get_parameter_f32_slice(glow::DEPTH_RANGE, &mut rounded);
+                    range = rounded.map(f64::from);
+                }
+            }
+        }
+        range
+    }
+
+    pub(super) fn set_clip_control(&self, origin: u32, depth: u32) {
+        if let Some(set) = self.commands().clip_control {
+            // SAFETY: the context is current, and has this command.
+            unsafe { set(origin, depth) };
+        }
+    }
+}

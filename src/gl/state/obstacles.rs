@@ -1,0 +1,89 @@
+//! States of a host under which no call can work, and that cannot be saved and put back.
+
+use glow::HasContext as _;
+
+use crate::error::{Error, Result};
+use crate::gl::Gl;
+
+/// GL_LIST_INDEX, of compatibility contexts.
+const LIST_INDEX: u32 = 0x0B33;
+
+/// Transform feedback of the host that was paused.
+#[derive(Debug)]
+pub(super) struct Feedback;
+
+impl Feedback {
+    /// Goes on with it, once the host's program is current again.
+    pub(super) fn resume(self, gl: &Gl) {
+        let Some(glow) = gl.live() else { return };
+        // SAFETY: the context is current; it was paused by `none`, and the host's objects are bound again.
+        unsafe { glow.resume_transform_feedback() };
+    }
+}
+
+/// Looks for what would make a call fail, or change what the host has; pauses transform feedback.
+///
+/// # Errors
+/// [`Error::HostState`], with nothing changed.
+pub(super) fn none(gl: &Gl) -> Result<Option<Feedback>> {
+    let glow = gl.current()?;
+    // SAFETY: the context is current while the handle lives; lists exist in compatibility contexts.
+    if gl.extent().is_compatible && unsafe { glow.get_parameter_i32(LIST_INDEX) } != 0 {
+        return refuse("a display list is open, which would record the call", "call glEndList before");
+    }
+    // SAFETY: as above; what is current is a program.
+    let is_deleted = unsafe {
+        glow.get_parameter_program(glow::CURRENT_PROGRAM)
+            .is_some_and(|program| glow.get_program_parameter_i32(program, glow::DELETE_STATUS) != 0)
+    };
+    if is_deleted {
+        return refuse(
+            "the current program is marked for deletion, and would be gone after the call",
+            "call glUseProgram with another program, or 0, before",
+        );
+    }
+    if let Some(begin) = gl.commands().begin_conditional_render {
+        // SAFETY: the context is current. There is no query 0, so that nothing begins: while conditional
+        // rendering is on that is the error that is reported.
+        let code = unsafe {
+            begin(0, glow::QUERY_WAIT);
+            glow.get_error()
+        };
+        if code == glow::INVALID_OPERATION {
+            return refuse(
+                "conditional rendering is on, which may drop what the call draws",
+                "call glEndConditionalRender before",
+            );
+        }
+    }
+    feedback(gl, glow)
+}
+
+fn feedback(gl: &Gl, glow: &glow::Context) -> Result<Option<Feedback>> {
+    // SAFETY: the context is current, and of a version that has these states.
+    unsafe {
+        if gl.commands().pauses_feedback {
+            let is_on = |parameter| glow.get_parameter_i32(parameter) != 0;
+            if is_on(glow::TRANSFORM_FEEDBACK_ACTIVE) && !is_on(glow::TRANSFORM_FEEDBACK_PAUSED) {
+                glow.pause_transform_feedback();
+                return Ok(Some(Feedback));
+            }
+            return Ok(None);
+        }
+        // OpenGL 3.3 does not tell, but allows no other program meanwhile.
+        let program = glow.get_parameter_program(glow::CURRENT_PROGRAM);
+        glow.use_program(None);
+        if glow.get_error() == glow::INVALID_OPERATION {
+            return refuse(
+                "transform feedback is on, which would record what the call draws",
+                "call glEndTransformFeedback before",
+            );
+        }
+        glow.use_program(program);
+    }
+    Ok(None)
+}
+
+fn refuse<T>(state: &'static str, remedy: &'static str) -> Result<T> {
+    Err(Error::HostState { state, remedy })
+}
