@@ -142,6 +142,21 @@ impl Running {
             .with_min_inner_size(LogicalSize::new(760, 420));
         let window = GlWindow::open(event_loop, attributes)
             .context("no window could be opened; `varikernel render` and `varikernel radius` need none")?;
+        let context = egui::Context::default();
+        context.set_theme(egui::Theme::Dark);
+        let mut egui = egui_winit::State::new(
+            context,
+            ViewportId::ROOT,
+            window.window(),
+            None,
+            None,
+            usize::try_from(window.gl().info().max_texture_size).ok(),
+        );
+        let mut painter = egui_glow::Painter::new(Arc::clone(window.glow()), "", None, false)
+            .context("egui's shaders were refused")?;
+        // What follows takes a software renderer seconds.
+        greet(&window, &mut egui, &mut painter, &wishes.choices.source)?;
+
         let mut state = State::new(window.gl(), wishes.choices.clone())?;
         state.most_steps = wishes.frames;
         if let Some(reference) = &wishes.reference {
@@ -150,19 +165,6 @@ impl Running {
         }
         state.view = wishes.view.filter(|&view| state.has(view)).unwrap_or(state.view);
         (state.beside, state.split) = (wishes.beside, wishes.split);
-
-        let context = egui::Context::default();
-        context.set_theme(egui::Theme::Dark);
-        let egui = egui_winit::State::new(
-            context,
-            ViewportId::ROOT,
-            window.window(),
-            None,
-            None,
-            usize::try_from(window.gl().info().max_texture_size).ok(),
-        );
-        let painter = egui_glow::Painter::new(Arc::clone(window.glow()), "", None, false)
-            .context("egui's shaders were refused")?;
         window.window().request_redraw();
         let title = String::new();
         let passes = StageTimes::new(window.gl())?;
@@ -181,7 +183,8 @@ impl Running {
         })
     }
 
-    /// One step of the picture, and the window drawn.
+    /// One step of the picture, and the window drawn; the first time without a step, which takes long where
+    /// shaders are compiled, so that something is seen before it.
     ///
     /// Three take turns with OpenGL's state: the library puts back what it touches, the canvas and egui set
     /// all that they need and put nothing back. So none of them may rely on the state that it left.
@@ -194,14 +197,14 @@ impl Running {
         let mut input = self.egui.take_egui_input(self.window.window());
         self.waiting.divide(&mut input);
         let context = self.egui.egui_ctx().clone();
-        let canvas = self.canvas.unwrap_or_default();
+        let canvas = self.canvas;
         let state = &mut self.state;
         let mut spot = None;
         let output = context.run_ui(input, |ui| spot = Some(lay_out(ui, state, canvas)));
         self.egui.handle_platform_output(self.window.window(), output.platform_output);
 
         self.passes.begin_frame();
-        let stepped = state.advance();
+        let stepped = canvas.is_some() && state.advance();
         self.passes.end_frame();
         if let Some(spot) = spot {
             let maps = state.engine.maps();
@@ -220,6 +223,9 @@ impl Running {
 
         let wait = output.viewport_output.get(&ViewportId::ROOT).map(|output| output.repaint_delay);
         self.schedule(wait.unwrap_or(Duration::MAX), stepped, begun);
+        if canvas.is_none() {
+            self.window.window().request_redraw();
+        }
         Ok(())
     }
 
@@ -272,8 +278,30 @@ impl Running {
     }
 }
 
-/// The whole window.
-fn lay_out(ui: &mut egui::Ui, state: &mut State, canvas: TextureId) -> middle::Spot {
+/// Says what is being opened.
+fn greet(
+    window: &GlWindow,
+    egui: &mut egui_winit::State,
+    painter: &mut egui_glow::Painter,
+    source: &str,
+) -> Result<()> {
+    let size = window.size().to_array();
+    let input = egui.take_egui_input(window.window());
+    let output = egui.egui_ctx().run_ui(input, |ui| {
+        CentralPanel::default().show(ui, |ui| {
+            ui.centered_and_justified(|ui| ui.label(format!("opening {source} \u{2026}")));
+        });
+    });
+    let points = output.pixels_per_point;
+    let shapes = egui.egui_ctx().tessellate(output.shapes, points);
+    painter.clear(size, [0.0, 0.0, 0.0, 1.0]);
+    painter.paint_and_update_textures(size, points, &shapes, &output.textures_delta);
+    window.show()?;
+    Ok(())
+}
+
+/// The whole window; without a canvas, none of the picture was drawn yet.
+fn lay_out(ui: &mut egui::Ui, state: &mut State, canvas: Option<TextureId>) -> middle::Spot {
     keys::handle(ui.ctx(), state);
     Panel::left("choices").exact_size(292.0).resizable(false).show(ui, |ui| panels::choices(ui, state));
     Panel::right("results").exact_size(262.0).resizable(false).show(ui, |ui| panels::results(ui, state));

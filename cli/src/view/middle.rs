@@ -24,7 +24,7 @@ pub(super) struct Spot {
 }
 
 /// Lays the middle out, and takes what the mouse does there.
-pub(super) fn show(ui: &mut Ui, state: &mut State, texture: TextureId) -> Spot {
+pub(super) fn show(ui: &mut Ui, state: &mut State, texture: Option<TextureId>) -> Spot {
     let whole = ui.available_rect_before_wrap();
     let below = Rect::from_min_max(pos2(whole.left(), whole.bottom() - LEGENDS), whole.max);
     let scale = ui.ctx().pixels_per_point();
@@ -50,8 +50,13 @@ pub(super) fn show(ui: &mut Ui, state: &mut State, texture: TextureId) -> Spot {
     });
 
     let painter = ui.painter_at(rect);
-    let all = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));
-    painter.image(texture, rect, all, Color32::WHITE);
+    if let Some(texture) = texture {
+        let all = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));
+        painter.image(texture, rect, all, Color32::WHITE);
+    } else {
+        let text = "compiling shaders for the first step \u{2026}";
+        painter.text(rect.center(), Align2::CENTER_CENTER, text, FontId::proportional(15.0), Color32::GRAY);
+    }
     if let Some(readout) = &state.readout {
         let (pixel, radius) = (readout.pixel.as_vec2(), readout.radius as f32);
         let first = to_screen(place.origin + place.scale * (pixel - radius));
