@@ -3,6 +3,7 @@
 mod against;
 mod bench;
 mod compare;
+mod completions;
 mod device;
 mod devices;
 mod figures;
@@ -10,6 +11,7 @@ mod flicker;
 mod glsl;
 mod interrupt;
 mod light;
+mod man;
 mod method_options;
 mod numbers;
 mod output;
@@ -31,7 +33,7 @@ use std::io::{self, IsTerminal as _};
 use std::process::ExitCode;
 
 use anyhow::Result;
-use clap::{ArgAction, Parser, Subcommand};
+use clap::{ArgAction, CommandFactory as _, Parser, Subcommand};
 use tracing_subscriber::filter::Targets;
 use tracing_subscriber::prelude::*;
 
@@ -86,6 +88,8 @@ enum Verb {
     // Boxed: it has nearly as many.
     Glsl(Box<glsl::Args>),
     Devices(devices::Args),
+    Completions(completions::Args),
+    Man(man::Args),
 }
 
 /// The result of a verb that succeeded.
@@ -125,8 +129,15 @@ fn run(cli: Cli) -> Result<Outcome> {
         Verb::Study(args) => study::run(&args),
         Verb::Stress(args) => stress::run(&args),
         Verb::Devices(args) => devices::run(&args),
+        Verb::Completions(args) => completions::run(&args),
+        Verb::Man(args) => man::run(&args),
         Verb::Bench(args) => bench::run(&args),
     }
+}
+
+/// The whole of the command line.
+fn command() -> clap::Command {
+    Cli::command()
 }
 
 /// Warnings always, more with `-v`, or as `RUST_LOG` says.
@@ -146,8 +157,6 @@ fn log_to_stderr(verbose: u8) {
 
 #[cfg(test)]
 mod tests {
-    use clap::CommandFactory as _;
-
     use super::*;
 
     /// The message with which an option's value is refused; nothing if it is accepted.

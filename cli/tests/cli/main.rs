@@ -20,6 +20,7 @@ mod photons;
 mod render;
 mod rule;
 mod saving;
+mod shell;
 mod stress;
 mod synth;
 
