@@ -618,6 +618,15 @@ enum varikernel_status varikernel_pipeline_resize(struct varikernel_pipeline *pi
                                                   uint32_t height);
 
 /**
+ * Draws a frame of a map without photons, waits for it, and forgets it: what a driver puts off until a shader
+ * first draws is done when this returns. Worth its time while a host loads, after
+ * varikernel_pipeline_create and varikernel_pipeline_resize. Takes the memory of one more density map meanwhile.
+ *
+ * Fails with OUT_OF_MEMORY, CONTEXT_LOST, OPEN_GL, INVALID_ARGUMENT, WRONG_THREAD, NO_CONTEXT.
+ */
+enum varikernel_status varikernel_pipeline_warm_up(struct varikernel_pipeline *pipeline);
+
+/**
  * Frees a pipeline with its textures; null is fine.
  *
  * Fails with WRONG_THREAD and NO_CONTEXT, and frees nothing then; see varikernel_context_abandon.

@@ -161,6 +161,15 @@ pub enum Error {
     )]
     ContextLost,
 
+    /// Another context is current on this thread, or none, where the loader can tell: it has
+    /// eglGetCurrentContext or its like. Nothing was called.
+    #[error(
+        "the OpenGL context that this was made in is not current on this thread\n\
+         help: make it current around each call and around drops; if it is gone, say so before (`Gl::abandon`, \
+         varikernel_context_abandon)"
+    )]
+    WrongContext,
+
     /// No context could be made on any device that was tried.
     #[error("{reason}\nhelp: {remedy}")]
     NoContext {

@@ -41,14 +41,19 @@ impl Home {
         if self.gl.is_lost() {
             return Err(Error::ContextLost.into());
         }
-        check_current(self.get_string)?;
+        self.check_current()?;
         Ok(&self.gl)
     }
 
     /// Whether what belongs here can be freed: with OpenGL, or without it after the context has gone.
     pub(super) fn check_drop(&self) -> Result<(), Failure> {
         self.check_thread()?;
-        if self.gl.is_lost() { Ok(()) } else { check_current(self.get_string) }
+        if self.gl.is_lost() { Ok(()) } else { self.check_current() }
+    }
+
+    fn check_current(&self) -> Result<(), Failure> {
+        check_current(self.get_string)?;
+        if self.gl.is_current() { Ok(()) } else { Err(Error::WrongContext.into()) }
     }
 
     fn abandon(&self) -> Result<(), Failure> {

@@ -145,6 +145,20 @@ pub unsafe extern "C" fn varikernel_pipeline_resize(
     })
 }
 
+/// Draws a frame of a map without photons, waits for it, and forgets it: what a driver puts off until a shader
+/// first draws is done when this returns. Worth its time while a host loads, after
+/// varikernel_pipeline_create and varikernel_pipeline_resize. Takes the memory of one more density map meanwhile.
+///
+/// Fails with OUT_OF_MEMORY, CONTEXT_LOST, OPEN_GL, INVALID_ARGUMENT, WRONG_THREAD, NO_CONTEXT.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn varikernel_pipeline_warm_up(pipeline: *mut Pipeline) -> Status {
+    answer(|| {
+        // SAFETY: the host gives a handle that was not destroyed, or null.
+        let pipeline = unsafe { given(pipeline, "pipeline") }?;
+        pipeline.0.with(|_, stages| Ok(stages.warm_up()?))
+    })
+}
+
 /// Frees a pipeline with its textures; null is fine.
 ///
 /// Fails with WRONG_THREAD and NO_CONTEXT, and frees nothing then; see varikernel_context_abandon.

@@ -14,9 +14,22 @@ type GetIndexedDoubles = unsafe extern "system" fn(parameter: u32, index: u32, v
 type ClipControl = unsafe extern "system" fn(origin: u32, depth: u32);
 type BeginConditionalRender = unsafe extern "system" fn(query: u32, mode: u32);
 
+type GetCurrentContext = unsafe extern "system" fn() -> *const c_void;
+
+/// The command of that name, as a pointer to a function of the given type.
+macro_rules! command {
+    ($loader:ident, $name:expr, $type:ty) => {{
+        let address = $loader($name);
+        // SAFETY: the caller of `Gl::from_loader` guarantees that this is the address of the command, which has
+        // this type.
+        (!address.is_null()).then(|| unsafe { std::mem::transmute::<*const c_void, $type>(address) })
+    }};
+}
+
 /// Commands, where the loader has them.
 #[derive(Debug, Default)]
 pub(super) struct Commands {
+    home: Option<Home>,
     pub(super) get_booleans: Option<GetBooleans>,
     pub(super) get_doubles: Option<GetDoubles>,
     pub(super) is_enabled: Option<IsEnabled>,
@@ -33,21 +46,40 @@ pub(super) struct Commands {
     pub(super) names_things: bool,
 }
 
+/// The context that the commands are of, as its platform names it.
+#[derive(Clone, Copy, Debug)]
+struct Home {
+    get_current_context: GetCurrentContext,
+    context: *const c_void,
+}
+
+impl Home {
+    /// Of the context that is current, where the loader knows its platform.
+    fn of(loader: &mut impl FnMut(&CStr) -> *const c_void) -> Option<Self> {
+        // Some loaders have a command for every name that begins with "gl", as GLX's do.
+        let makes_commands_up = !loader(c"glXGetNoContextAtAll").is_null();
+        let platforms: [(&CStr, bool); 5] = [
+            (c"eglGetCurrentContext", true),
+            (c"OSMesaGetCurrentContext", true),
+            (c"wglGetCurrentContext", true),
+            (c"CGLGetCurrentContext", true),
+            (c"glXGetCurrentContext", !makes_commands_up),
+        ];
+        platforms.into_iter().filter(|&(_, is_known)| is_known).find_map(|(name, _)| {
+            let get_current_context = command!(loader, name, GetCurrentContext)?;
+            // SAFETY: the command takes nothing, and may be called at any time.
+            let context = unsafe { get_current_context() };
+            // Another platform's context is none of this one.
+            (!context.is_null()).then_some(Self { get_current_context, context })
+        })
+    }
+}
+
 /// What reads the state of one viewport.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Viewports {
     pub(super) get_floats: GetIndexedFloats,
     pub(super) get_doubles: GetIndexedDoubles,
-}
-
-/// The command of that name, as a pointer to a function of the given type.
-macro_rules! command {
-    ($loader:ident, $name:literal, $type:ty) => {{
-        let address = $loader($name);
-        // SAFETY: the caller of `Gl::from_loader` guarantees that this is the address of the command, which has
-        // this type.
-        (!address.is_null()).then(|| unsafe { std::mem::transmute::<*const c_void, $type>(address) })
-    }};
 }
 
 impl Commands {
@@ -62,6 +94,7 @@ impl Commands {
         let get_doubles = command!(loader, c"glGetDoublei_v", GetIndexedDoubles);
         let viewports = get_floats.zip(get_doubles).filter(|_| sets_viewports);
         Self {
+            home: Home::of(loader),
             get_booleans: command!(loader, c"glGetBooleani_v", GetBooleans),
             get_doubles: command!(loader, c"glGetDoublev", GetDoubles),
             is_enabled: command!(loader, c"glIsEnabledi", IsEnabled),
@@ -77,6 +110,12 @@ impl Commands {
     /// Where there is no loader: only what glow has.
     pub(super) fn of_glow() -> Self {
         Self { names_things: true, ..Self::default() }
+    }
+
+    /// Whether the context that they were loaded in is current.
+    pub(super) fn is_at_home(&self) -> bool {
+        // SAFETY: the command takes nothing, and may be called at any time.
+        self.home.is_none_or(|home| unsafe { (home.get_current_context)() } == home.context)
     }
 
     /// Without those that the context is too old for: a loader may know commands of any version.

@@ -28,18 +28,29 @@ impl Gl {
         self.inner.lost.get()
     }
 
+    /// Whether the context of this handle is current on this thread; true where the loader cannot tell: it has
+    /// to know eglGetCurrentContext, glXGetCurrentContext or their like. Otherwise calls answer
+    /// [`Error::WrongContext`], and drops delete nothing.
+    #[must_use]
+    pub fn is_current(&self) -> bool {
+        self.inner.commands.is_at_home()
+    }
+
     /// The context, to be called.
     ///
     /// # Errors
-    /// [`Error::ContextLost`].
+    /// [`Error::ContextLost`], [`Error::WrongContext`].
     pub(crate) fn current(&self) -> Result<&glow::Context> {
-        self.live().ok_or(Error::ContextLost)
+        if self.is_lost() {
+            return Err(Error::ContextLost);
+        }
+        self.live().ok_or(Error::WrongContext)
     }
 
-    /// The context, if it is there: for drops, and for commands whose failure a later [`check`](Self::check)
-    /// reports.
+    /// The context, if it is there and current: for drops, and for commands whose failure a later
+    /// [`check`](Self::check) reports. Under another context names mean other things.
     pub(super) fn live(&self) -> Option<&glow::Context> {
-        (!self.is_lost()).then_some(&*self.inner.glow)
+        (!self.is_lost() && self.is_current()).then_some(&*self.inner.glow)
     }
 
     /// The oldest pending GL error as our error, if there is one.

@@ -251,6 +251,16 @@ impl Gl {
         (version.major, version.minor) >= (4, 4)
     }
 
+    /// Waits until the GPU has done what it was asked for.
+    ///
+    /// # Errors
+    /// As [`current`](Self::current).
+    pub(crate) fn finish(&self) -> Result<()> {
+        // SAFETY: the context is current.
+        unsafe { self.current()?.finish() };
+        Ok(())
+    }
+
     /// As [`labelled`](Self::labelled), and timed if a [`StageTimes`] is recording.
     fn timed<T>(&self, label: &str, work: impl FnOnce() -> T) -> T {
         let recorder = self.inner.stage_times.borrow().upgrade();
@@ -270,7 +280,7 @@ impl fmt::Debug for Gl {
 
 impl Drop for Inner {
     fn drop(&mut self) {
-        if self.lost.get() {
+        if self.lost.get() || !self.commands.is_at_home() {
             return;
         }
         // SAFETY: the context is current while the handle lives, and the names are ours.

@@ -165,6 +165,7 @@ static void *elsewhere(void *unused) {
     EXPECT(render(), VARIKERNEL_STATUS_WRONG_THREAD, "thread");
     EXPECT(make(SIDE, SIDE, GL_R32F), VARIKERNEL_STATUS_WRONG_THREAD, "thread");
     EXPECT(varikernel_pipeline_resize(pipeline, 1, 1), VARIKERNEL_STATUS_WRONG_THREAD, "thread");
+    EXPECT(varikernel_pipeline_warm_up(pipeline), VARIKERNEL_STATUS_WRONG_THREAD, "thread");
     EXPECT(varikernel_pipeline_destroy(pipeline), VARIKERNEL_STATUS_WRONG_THREAD, "thread");
     EXPECT(varikernel_context_destroy(context), VARIKERNEL_STATUS_WRONG_THREAD, "thread");
     EXPECT(varikernel_context_abandon(context), VARIKERNEL_STATUS_WRONG_THREAD, "thread");
@@ -176,6 +177,7 @@ static void without_context(const headless *host) {
     EXPECT(render(), VARIKERNEL_STATUS_NO_CONTEXT, "help:");
     EXPECT(make(SIDE, SIDE, GL_R32F), VARIKERNEL_STATUS_NO_CONTEXT, "help:");
     EXPECT(varikernel_pipeline_resize(pipeline, 1, 1), VARIKERNEL_STATUS_NO_CONTEXT, "help:");
+    EXPECT(varikernel_pipeline_warm_up(pipeline), VARIKERNEL_STATUS_NO_CONTEXT, "help:");
     EXPECT(varikernel_pipeline_destroy(pipeline), VARIKERNEL_STATUS_NO_CONTEXT, "help:");
     EXPECT(varikernel_context_destroy(context), VARIKERNEL_STATUS_NO_CONTEXT, "help:");
     EXPECT_TRUE(headless_make_current(host, 1));
@@ -188,6 +190,7 @@ static void wrong_sizes(void) {
     EXPECT(varikernel_pipeline_resize(pipeline, 1, 1u << 20), VARIKERNEL_STATUS_TOO_LARGE, "1048576");
     EXPECT_OK(render());
     EXPECT_OK(varikernel_pipeline_resize(pipeline, 5, 4));
+    EXPECT_OK(varikernel_pipeline_warm_up(pipeline));
     EXPECT(render(), VARIKERNEL_STATUS_MISMATCH, "5 x 4");
 }
 
@@ -222,6 +225,7 @@ static void abandoned(const headless *host) {
     EXPECT(render(), VARIKERNEL_STATUS_CONTEXT_LOST, "help:");
     EXPECT(make(SIDE, SIDE, GL_R8UI), VARIKERNEL_STATUS_CONTEXT_LOST, "help:");
     EXPECT(varikernel_pipeline_resize(pipeline, 1, 1), VARIKERNEL_STATUS_CONTEXT_LOST, "help:");
+    EXPECT(varikernel_pipeline_warm_up(pipeline), VARIKERNEL_STATUS_CONTEXT_LOST, "help:");
     EXPECT(varikernel_memory_held(context, &bytes), VARIKERNEL_STATUS_CONTEXT_LOST, "help:");
     EXPECT_TRUE(headless_make_current(host, 0));
     EXPECT_OK(varikernel_pipeline_destroy(pipeline));

@@ -20,8 +20,14 @@ pub(crate) struct Compatible {
     pub(crate) alpha_func: unsafe extern "system" fn(u32, f32),
     pub(crate) new_list: unsafe extern "system" fn(u32, u32),
     pub(crate) end_list: unsafe extern "system" fn(),
-    _context: PossiblyCurrentContext,
+    context: PossiblyCurrentContext,
     _display: Display,
+}
+
+impl Compatible {
+    pub(crate) fn make_current(&self) {
+        self.context.make_current_surfaceless().unwrap();
+    }
 }
 
 /// On the software device, which every test machine has.
@@ -65,7 +71,7 @@ pub(crate) fn compatible() -> Compatible {
             end_list: std::mem::transmute::<*const c_void, unsafe extern "system" fn()>(
                 addresses[c"glEndList"],
             ),
-            _context: context,
+            context,
             _display: display,
         }
     }

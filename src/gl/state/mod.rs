@@ -59,8 +59,12 @@ impl StateGuard {
     /// Saves the host's state and sets what every pass and transfer relies on.
     ///
     /// # Errors
-    /// [`Error::HostState`](crate::Error::HostState), with nothing changed, under what no call can work.
+    /// [`Error::WrongContext`](crate::Error::WrongContext); [`Error::HostState`](crate::Error::HostState) under
+    /// what no call can work; nothing is changed by either.
     pub(crate) fn new(gl: &Gl) -> Result<Self> {
+        if !gl.is_lost() {
+            gl.current()?;
+        }
         gl.forget_errors();
         let guards = &gl.inner.state_guards;
         let is_outermost = guards.get() == 0;
@@ -112,7 +116,7 @@ impl Drop for StateGuard {
         let gl = &self.gl;
         match &self.before {
             Before::Nothing => (),
-            _ if gl.is_lost() => (),
+            _ if gl.live().is_none() => (),
             Before::Saved(values) => {
                 for ((row, instance), &values) in instances(gl, self.rows).rev().zip(values.iter().rev()) {
                     row.write(gl, instance, values);

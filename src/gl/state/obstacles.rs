@@ -49,11 +49,15 @@ pub(super) fn none(gl: &Gl) -> Result<Option<Feedback>> {
             begin(0, glow::QUERY_WAIT);
             glow.get_error()
         };
-        if code == glow::INVALID_OPERATION {
-            return refuse(
-                "conditional rendering is on, which may drop what the call draws",
-                "call glEndConditionalRender before",
-            );
+        match code {
+            glow::INVALID_VALUE | glow::NO_ERROR => (),
+            glow::INVALID_OPERATION => {
+                return refuse(
+                    "conditional rendering is on, which may drop what the call draws",
+                    "call glEndConditionalRender before",
+                );
+            }
+            other => return Err(gl.error(other, "what tells of conditional rendering", None)),
         }
     }
     feedback(gl, glow)
@@ -73,13 +77,16 @@ fn feedback(gl: &Gl, glow: &glow::Context) -> Result<Option<Feedback>> {
         // OpenGL 3.3 does not tell, but allows no other program meanwhile.
         let program = glow.get_parameter_program(glow::CURRENT_PROGRAM);
         glow.use_program(None);
-        if glow.get_error() == glow::INVALID_OPERATION {
-            return refuse(
-                "transform feedback is on, which would record what the call draws",
-                "call glEndTransformFeedback before",
-            );
+        match glow.get_error() {
+            glow::NO_ERROR => glow.use_program(program),
+            glow::INVALID_OPERATION => {
+                return refuse(
+                    "transform feedback is on, which would record what the call draws",
+                    "call glEndTransformFeedback before",
+                );
+            }
+            other => return Err(gl.error(other, "what tells of transform feedback", None)),
         }
-        glow.use_program(program);
     }
     Ok(None)
 }

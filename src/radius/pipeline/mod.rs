@@ -3,6 +3,7 @@
 mod certify;
 mod frame;
 mod size;
+mod warm_up;
 
 use glam::UVec2;
 pub use size::MemoryRequired;

@@ -76,6 +76,8 @@ fn methods(watch: &Watch<'_>) {
         let settings = Settings { search: question(), method, limited_mask: true, ..Settings::default() };
         let mut pipeline = RadiusPipeline::new(&watch.gl, SIZE, map.format(), settings).unwrap();
         watch.unchanged("RadiusPipeline::new");
+        pipeline.warm_up().unwrap();
+        watch.unchanged("RadiusPipeline::warm_up");
         let radii = pipeline.render(&map).unwrap();
         watch.unchanged("RadiusPipeline::render");
         let radius = radii.read().unwrap();

@@ -5,6 +5,7 @@ use varikernel::{Error, Gl, StatePolicy};
 
 use super::host::Host;
 use super::{Watch, borrowed_textures, calls, egl_choice};
+use crate::compatible::compatible;
 
 /// A frame is refused with these words, and works once the obstacle is gone.
 fn refused(host: &Host, words: &str, set: impl FnOnce(&Watch<'_>), clear: impl FnOnce(&Watch<'_>)) {
@@ -159,10 +160,40 @@ fn the_groups_of_a_host_that_has_all_of_them_stay() {
     }
 }
 
+/// An engine with two contexts has the other one current.
+#[test]
+fn another_context_is_noticed_and_keeps_its_objects() {
+    let [ours, other] = [compatible(), compatible()];
+    ours.make_current();
+    assert!(ours.gl.is_current() && !other.gl.is_current());
+    let (map, mut pipeline) = calls::uploaded(&ours.gl);
+    pipeline.render(&map).unwrap();
+    other.make_current();
+    let glow = other.gl.glow();
+    // SAFETY: the context is current; names in it count up as in the first.
+    let textures: Vec<_> = (0..64).map(|_| unsafe { glow.create_texture() }.unwrap()).collect();
+    for &texture in &textures {
+        // SAFETY: as above; a name becomes a texture when it is bound.
+        unsafe { glow.bind_texture(glow::TEXTURE_2D, Some(texture)) };
+    }
+    let error = pipeline.render(&map).unwrap_err();
+    assert!(matches!(error, Error::WrongContext), "{error:?}");
+    assert!(matches!(pipeline.radii().read(), Err(Error::WrongContext)));
+    ours.make_current();
+    pipeline.render(&map).unwrap();
+    assert_eq!(pipeline.radii().read().unwrap(), calls::expected().radius);
+    other.make_current();
+    drop((map, pipeline));
+    // SAFETY: as above.
+    assert!(
+        textures.iter().all(|&texture| unsafe { glow.is_texture(texture) }),
+        "a drop deletes nothing here"
+    );
+}
+
 /// What OpenGL 3.1 dropped, in a context that still has it.
 mod compatibility {
     use super::*;
-    use crate::compatible::compatible;
 
     const POLYGON_STIPPLE: u32 = 0x0B42;
     const ALPHA_TEST: u32 = 0x0BC0;
