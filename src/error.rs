@@ -161,6 +161,16 @@ pub enum Error {
     )]
     ContextLost,
 
+    /// A loader that does not find all of OpenGL 3.3 core, in a context of that version.
+    #[error(
+        "the loader does not find {command}, which OpenGL 3.3 core has\n\
+         help: pass on what your window library or platform finds, such as eglGetProcAddress, for every name"
+    )]
+    MissingCommand {
+        /// The command's name.
+        command: String,
+    },
+
     /// Another context is current on this thread, or none, where the loader can tell: it has
     /// eglGetCurrentContext or its like. Nothing was called.
     #[error(

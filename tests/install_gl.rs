@@ -1,6 +1,7 @@
 //! `.ci/install-gl` on systems other than this one, with package managers that only write down what they are asked.
 
 #![cfg(unix)]
+#![expect(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use std::fs;
 use std::os::unix::fs::PermissionsExt as _;

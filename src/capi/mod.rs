@@ -13,6 +13,7 @@ mod context;
 mod frame;
 mod handle;
 mod irradiance;
+mod log;
 mod pipeline;
 mod settings;
 mod status;

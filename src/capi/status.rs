@@ -66,7 +66,7 @@ impl From<Error> for Failure {
             Error::OutOfMemory { .. } => Status::OutOfMemory,
             Error::ContextLost => Status::ContextLost,
             Error::Gl { .. } | Error::HostState { .. } => Status::OpenGl,
-            Error::NoContext { .. } | Error::WrongContext => Status::NoContext,
+            Error::NoContext { .. } | Error::MissingCommand { .. } | Error::WrongContext => Status::NoContext,
             // Nothing here reads files, has scenes with lights, lets a caller name uniforms or needs a query.
             Error::File { .. }
             | Error::NoLight

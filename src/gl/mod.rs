@@ -100,7 +100,8 @@ impl Gl {
     /// No extension is needed. KHR_debug is used to name passes and objects when it is there.
     ///
     /// # Errors
-    /// [`Error::NoContext`] when no context is current, [`Error::Version`] when it is older than 3.3.
+    /// [`Error::NoContext`] when no context is current, [`Error::Version`] when it is older than 3.3,
+    /// [`Error::MissingCommand`] where the loader does not find a command that the library calls.
     ///
     /// # Safety
     /// `loader` returns the address of the named command in the context that is current on this thread, or
@@ -115,7 +116,14 @@ impl Gl {
         mut loader: impl FnMut(&CStr) -> *const c_void,
         context: Option<Box<dyn Any>>,
     ) -> Result<Self> {
-        check_current(&mut loader)?;
+        let version = check_current(&mut loader)?;
+        // Of an older context, the version is what is wrong.
+        if is_3_3(version) {
+            let missing = commands::REQUIRED.into_iter().find(|command| loader(command).is_null());
+            if let Some(command) = missing {
+                return Err(Error::MissingCommand { command: command.to_string_lossy().into_owned() });
+            }
+        }
         let commands = Commands::load(&mut loader);
         // SAFETY: the caller guarantees for the loader; a current context was just seen.
         let glow = unsafe { glow::Context::from_loader_function_cstr(loader) };
@@ -292,8 +300,16 @@ impl Drop for Inner {
     }
 }
 
-/// glow panics where no context is current; this returns an error instead.
-fn check_current(loader: &mut impl FnMut(&CStr) -> *const c_void) -> Result<()> {
+/// Whether GL_VERSION begins with 3.3 or more.
+fn is_3_3(version: &CStr) -> bool {
+    let text = version.to_string_lossy();
+    let number = text.split(' ').next().unwrap_or_default();
+    let mut parts = number.split('.').map(|part| part.parse::<u32>().unwrap_or(0));
+    (parts.next().unwrap_or(0), parts.next().unwrap_or(0)) >= (3, 3)
+}
+
+/// GL_VERSION. glow panics where no context is current; this returns an error instead.
+fn check_current<'a>(loader: &mut impl FnMut(&CStr) -> *const c_void) -> Result<&'a CStr> {
     type GetString = unsafe extern "system" fn(name: u32) -> *const u8;
     let get_string = loader(c"glGetString");
     if get_string.is_null() {
@@ -302,10 +318,12 @@ fn check_current(loader: &mut impl FnMut(&CStr) -> *const c_void) -> Result<()> 
     // SAFETY: the caller of `from_loader` guarantees that this is the address of glGetString.
     let get_string = unsafe { std::mem::transmute::<*const c_void, GetString>(get_string) };
     // SAFETY: glGetString takes any value; without a context it returns null.
-    if unsafe { get_string(glow::VERSION) }.is_null() {
+    let version = unsafe { get_string(glow::VERSION) };
+    if version.is_null() {
         return Err(Error::no_current_context("no OpenGL context is current on this thread"));
     }
-    Ok(())
+    // SAFETY: it is a text that the driver keeps.
+    Ok(unsafe { CStr::from_ptr(version.cast()) })
 }
 
 unsafe fn sampler(glow: &glow::Context, minification: u32) -> Result<glow::Sampler> {

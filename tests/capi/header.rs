@@ -5,8 +5,8 @@ use std::fs;
 use crate::root;
 
 /// In the order of the header; of `irradiance/mod`, cbindgen reads the modules inside as well.
-const SOURCES: [&str; 7] =
-    ["version", "status", "context", "settings", "frame", "pipeline", "irradiance/mod"];
+const SOURCES: [&str; 8] =
+    ["version", "status", "log", "context", "settings", "frame", "pipeline", "irradiance/mod"];
 
 fn generated() -> String {
     let config = cbindgen::Config::from_file(root().join("cbindgen.toml")).unwrap();
@@ -46,6 +46,9 @@ fn declared_twice(header: &str) -> Vec<&str> {
         .filter(|line| !line.starts_with([' ', '/']))
         .filter_map(|line| match line.strip_prefix("#define ") {
             Some(definition) => definition.split(' ').next(),
+            None if line.starts_with("typedef") && line.contains("(*") => {
+                line.split_once("(*")?.1.split(')').next()
+            }
             None if line.starts_with('}') => line.strip_prefix("} ")?.strip_suffix(';'),
             None => line.split_once('(')?.0.rsplit([' ', '*']).next(),
         })

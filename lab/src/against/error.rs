@@ -52,8 +52,9 @@ impl Reference {
         for region in Region::ALL.into_iter().skip(1) {
             let is_in = |pixel: &usize| regions.is_some_and(|regions| regions.values()[*pixel].is_in(region));
             let inside: Vec<usize> = (0..pixels).filter(is_in).collect();
-            // Where no lamp is seen, that is the whole again.
-            if !inside.is_empty() && !(region == Region::AllButLamps && inside.len() == pixels) {
+            // Where no lamp is seen, all but lamps are the whole again.
+            let is_whole = region == Region::AllButLamps && inside.len() == pixels;
+            if !inside.is_empty() && !is_whole {
                 all.push((region, inside));
             }
         }

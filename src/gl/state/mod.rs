@@ -19,8 +19,8 @@ use crate::error::Result;
 /// The page [`state_contract`](crate::gl::state_contract) lists every state that this is about.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum StatePolicy {
-    /// Each call queries the states that it touches, and restores them: safe in any host, for about 70
-    /// queries a call.
+    /// Each call queries the states that it touches, and restores them: safe in any host, for about 90
+    /// queries a call, 165 from OpenGL 4.1 on.
     #[default]
     Restore,
     /// The host guarantees that what a call touches has OpenGL's default values when it starts, and finds the
@@ -138,7 +138,7 @@ impl Drop for StateGuard {
             }
         }
         if let Some(feedback) = self.feedback.take() {
-            feedback.resume(gl);
+            feedback.resume();
         }
         if std::ptr::eq(self.rows, PASSES) {
             let guards = &gl.inner.state_guards;

@@ -10,12 +10,12 @@ const LIST_INDEX: u32 = 0x0B33;
 
 /// Transform feedback of the host that was paused.
 #[derive(Debug)]
-pub(super) struct Feedback;
+pub(super) struct Feedback(Gl);
 
 impl Feedback {
     /// Goes on with it, once the host's program is current again.
-    pub(super) fn resume(self, gl: &Gl) {
-        let Some(glow) = gl.live() else { return };
+    pub(super) fn resume(self) {
+        let Some(glow) = self.0.live() else { return };
         // SAFETY: the context is current; it was paused by `none`, and the host's objects are bound again.
         unsafe { glow.resume_transform_feedback() };
     }
@@ -70,7 +70,7 @@ fn feedback(gl: &Gl, glow: &glow::Context) -> Result<Option<Feedback>> {
             let is_on = |parameter| glow.get_parameter_i32(parameter) != 0;
             if is_on(glow::TRANSFORM_FEEDBACK_ACTIVE) && !is_on(glow::TRANSFORM_FEEDBACK_PAUSED) {
                 glow.pause_transform_feedback();
-                return Ok(Some(Feedback));
+                return Ok(Some(Feedback(gl.clone())));
             }
             return Ok(None);
         }

@@ -80,12 +80,11 @@ impl Row {
     pub(super) fn instances(&self, gl: &Gl) -> impl DoubleEndedIterator<Item = Option<u32>> + use<> {
         let one = |is_there: bool| if is_there { (1, false) } else { (0, false) };
         let (count, has_index) = match self.number {
-            Number::One => one(true),
             Number::Units => (UNITS, true),
             Number::DrawBuffers => (DRAW_BUFFERS, true),
             Number::DrawBuffersIfSplit if gl.commands().blends_by_buffer => (DRAW_BUFFERS, true),
             Number::Viewports if gl.commands().viewports.is_some() => (gl.extent().viewports, true),
-            Number::DrawBuffersIfSplit | Number::Viewports => one(true),
+            Number::One | Number::DrawBuffersIfSplit | Number::Viewports => one(true),
             Number::ClipControl => one(gl.commands().clip_control.is_some()),
             Number::Compatibility => one(gl.extent().is_compatible),
         };

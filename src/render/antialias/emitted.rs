@@ -91,7 +91,10 @@ mod tests {
     fn small_parts_as_bright_or_dark_as_what_is_beside_are_found() {
         for (part, rest, middle) in [(17.0, 0.0, 0.0), (0.0, 17.0, 17.0)] {
             let of = |at: DVec2| if at.x > 0.97 { part } else { rest };
-            assert!(samples(of, 0.3).iter().all(|&(_, light)| light.x == middle), "eight samples miss it");
+            assert!(
+                samples(of, 0.3).iter().all(|&(_, light)| light == Vec3::splat(middle)),
+                "eight samples miss it"
+            );
             let found = beside(of, [0.0, 17.0], 0.3);
             let mean = found.iter().map(|(_, light)| light.x).sum::<f32>() / found.len() as f32;
             let wanted = 0.03f32.mul_add(part, 0.97 * rest);

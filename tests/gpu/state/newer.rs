@@ -100,7 +100,9 @@ impl Host {
             }
             (self.commands.clip_control)(glow::UPPER_LEFT, glow::ZERO_TO_ONE);
             glow.patch_parameter_i32(glow::PATCH_VERTICES, 7);
-            CAPABILITIES.into_iter().for_each(|capability| glow.enable(capability));
+            for capability in CAPABILITIES {
+                glow.enable(capability);
+            }
             let mut pipeline = 0;
             (self.commands.gen_program_pipelines)(1, &raw mut pipeline);
             (self.commands.bind_program_pipeline)(pipeline);
