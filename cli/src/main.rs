@@ -24,6 +24,7 @@ mod saving;
 mod share_bar;
 mod stress;
 mod study;
+mod survey;
 mod synth;
 #[cfg(feature = "window")]
 mod view;
@@ -50,6 +51,7 @@ Examples:
   varikernel reproduce                         the thesis's numbers from this machine
   varikernel study                             run time against error, as one page
   varikernel stress --quick                    whether the promises about exactness hold here
+  varikernel survey                            all of it in ten minutes, for the table of cards
   varikernel glsl radius-search/inner          a shader's text, for engines with code of their own
   varikernel devices                           the OpenGL devices found here";
 
@@ -82,6 +84,7 @@ enum Verb {
     Reproduce(reproduce::Args),
     Study(study::Args),
     Stress(stress::Args),
+    Survey(survey::Args),
     Compare(compare::Args),
     Photons(photons::Args),
     Synth(synth::Args),
@@ -128,6 +131,7 @@ fn run(cli: Cli) -> Result<Outcome> {
         Verb::Reproduce(args) => reproduce::run(&args),
         Verb::Study(args) => study::run(&args),
         Verb::Stress(args) => stress::run(&args),
+        Verb::Survey(args) => survey::run(&args),
         Verb::Devices(args) => devices::run(&args),
         Verb::Completions(args) => completions::run(&args),
         Verb::Man(args) => man::run(&args),

@@ -14,6 +14,7 @@ type GetIndexedDoubles = unsafe extern "system" fn(parameter: u32, index: u32, v
 type ClipControl = unsafe extern "system" fn(origin: u32, depth: u32);
 type BeginConditionalRender = unsafe extern "system" fn(query: u32, mode: u32);
 
+type EndConditionalRender = unsafe extern "system" fn();
 type GetCurrentContext = unsafe extern "system" fn() -> *const c_void;
 
 /// The command of that name, as a pointer to a function of the given type.
@@ -33,7 +34,7 @@ pub(super) struct Commands {
     pub(super) get_booleans: Option<GetBooleans>,
     pub(super) get_doubles: Option<GetDoubles>,
     pub(super) is_enabled: Option<IsEnabled>,
-    pub(super) begin_conditional_render: Option<BeginConditionalRender>,
+    pub(super) conditional_render: Option<ConditionalRender>,
     /// OpenGL 4.1: viewports, depth ranges and scissor tests by index.
     pub(super) viewports: Option<Viewports>,
     /// OpenGL 4.5.
@@ -56,14 +57,15 @@ struct Home {
 impl Home {
     /// Of the context that is current, where the loader knows its platform.
     fn of(loader: &mut impl FnMut(&CStr) -> *const c_void) -> Option<Self> {
-        // Some loaders have a command for every name that begins with "gl", as GLX's do.
-        let makes_commands_up = !loader(c"glXGetNoContextAtAll").is_null();
+        // Some loaders make up a command for every name, as GLX's does, or for those that begin with "gl".
+        let is_of_glx = !loader(c"eglGetNoContextAtAll").is_null();
+        let makes_up_gl = !is_of_glx && !loader(c"glXGetNoContextAtAll").is_null();
         let platforms: [(&CStr, bool); 5] = [
-            (c"eglGetCurrentContext", true),
-            (c"OSMesaGetCurrentContext", true),
-            (c"wglGetCurrentContext", true),
-            (c"CGLGetCurrentContext", true),
-            (c"glXGetCurrentContext", !makes_commands_up),
+            (c"eglGetCurrentContext", !is_of_glx),
+            (c"OSMesaGetCurrentContext", !is_of_glx),
+            (c"wglGetCurrentContext", !is_of_glx),
+            (c"CGLGetCurrentContext", !is_of_glx),
+            (c"glXGetCurrentContext", !makes_up_gl),
         ];
         platforms.into_iter().filter(|&(_, is_known)| is_known).find_map(|(name, _)| {
             let get_current_context = command!(loader, name, GetCurrentContext)?;
@@ -73,6 +75,13 @@ impl Home {
             (!context.is_null()).then_some(Self { get_current_context, context })
         })
     }
+}
+
+/// What tells whether conditional rendering is on.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ConditionalRender {
+    pub(super) begin: BeginConditionalRender,
+    pub(super) end: EndConditionalRender,
 }
 
 /// What reads the state of one viewport.
@@ -93,12 +102,14 @@ impl Commands {
         let get_floats = command!(loader, c"glGetFloati_v", GetIndexedFloats);
         let get_doubles = command!(loader, c"glGetDoublei_v", GetIndexedDoubles);
         let viewports = get_floats.zip(get_doubles).filter(|_| sets_viewports);
+        let begin = command!(loader, c"glBeginConditionalRender", BeginConditionalRender);
+        let end = command!(loader, c"glEndConditionalRender", EndConditionalRender);
         Self {
             home: Home::of(loader),
             get_booleans: command!(loader, c"glGetBooleani_v", GetBooleans),
             get_doubles: command!(loader, c"glGetDoublev", GetDoubles),
             is_enabled: command!(loader, c"glIsEnabledi", IsEnabled),
-            begin_conditional_render: command!(loader, c"glBeginConditionalRender", BeginConditionalRender),
+            conditional_render: begin.zip(end).map(|(begin, end)| ConditionalRender { begin, end }),
             viewports: viewports.map(|(get_floats, get_doubles)| Viewports { get_floats, get_doubles }),
             clip_control: command!(loader, c"glClipControl", ClipControl),
             blends_by_buffer,
@@ -109,7 +120,7 @@ impl Commands {
 
     /// Where there is no loader: only what glow has.
     pub(super) fn of_glow() -> Self {
-        Self { names_things: true, ..Self::default() }
+        Self { names_things: true, blends_by_buffer: true, pauses_feedback: true, ..Self::default() }
     }
 
     /// Whether the context that they were loaded in is current.
@@ -118,23 +129,17 @@ impl Commands {
         self.home.is_none_or(|home| unsafe { (home.get_current_context)() } == home.context)
     }
 
-    /// Without those that the context is too old for: a loader may know commands of any version.
-    pub(super) fn of_version(mut self, glow: &glow::Context) -> Self {
-        let version = glow.version();
-        let is_since = |major, minor| (version.major, version.minor) >= (major, minor);
-        self.viewports = self.viewports.filter(|_| is_since(4, 1));
-        self.clip_control = self.clip_control.filter(|_| is_since(4, 5));
-        self.blends_by_buffer &= is_since(4, 0);
-        self.pauses_feedback &= is_since(4, 0);
+    /// Without those that the context does not have: a loader may know commands of any version.
+    pub(super) fn of_context(mut self, glow: &glow::Context) -> Self {
+        let (version, extensions) = (glow.version(), glow.supported_extensions());
+        let has = |major, minor, extension: &str| {
+            (version.major, version.minor) >= (major, minor) || extensions.contains(extension)
+        };
+        self.viewports = self.viewports.filter(|_| has(4, 1, "GL_ARB_viewport_array"));
+        self.clip_control = self.clip_control.filter(|_| has(4, 5, "GL_ARB_clip_control"));
+        self.blends_by_buffer &= has(4, 0, "GL_ARB_draw_buffers_blend");
+        self.pauses_feedback &= has(4, 0, "GL_ARB_transform_feedback2");
         self.names_things &= glow.supports_debug();
-        // Without a query it does nothing but say so, unless conditional rendering goes on.
-        self.begin_conditional_render = self.begin_conditional_render.filter(|begin| {
-            // SAFETY: the context is current; the command takes any values.
-            unsafe {
-                begin(0, glow::QUERY_WAIT);
-                glow.get_error() == glow::INVALID_VALUE
-            }
-        });
         self
     }
 }
@@ -250,6 +255,8 @@ pub(super) struct Extent {
     pub(super) viewports: u32,
     /// Whether it has the state of OpenGL before 3.1.
     pub(super) is_compatible: bool,
+    /// Whether it tells of errors: not with KHR_no_error, where what would be one may end the process.
+    pub(super) tells_errors: bool,
 }
 
 impl Extent {
@@ -257,10 +264,15 @@ impl Extent {
         // SAFETY: the context is current, and of a version that has these states.
         unsafe {
             let viewports = commands.viewports.map(|_| glow.get_parameter_i32(glow::MAX_VIEWPORTS));
-            let profile = glow.get_parameter_i32(glow::CONTEXT_PROFILE_MASK).cast_unsigned();
+            let mask = |name| glow.get_parameter_i32(name).cast_unsigned();
+            // Some drivers leave the mask empty.
+            let is_compatible = mask(glow::CONTEXT_PROFILE_MASK) & glow::CONTEXT_COMPATIBILITY_PROFILE_BIT
+                != 0
+                || glow.supported_extensions().contains("GL_ARB_compatibility");
             Self {
                 viewports: viewports.map_or(0, i32::cast_unsigned),
-                is_compatible: profile & glow::CONTEXT_COMPATIBILITY_PROFILE_BIT != 0,
+                is_compatible,
+                tells_errors: mask(glow::CONTEXT_FLAGS) & glow::CONTEXT_FLAG_NO_ERROR_BIT == 0,
             }
         }
     }

@@ -75,6 +75,8 @@ struct Inner {
     commands: Commands,
     extent: Extent,
     info: DeviceInfo,
+    /// What conditional rendering is asked about with, once it was begun and ended.
+    ended_query: Cell<Option<glow::Query>>,
     /// Debug groups that may still be pushed.
     groups_left: Cell<u32>,
     vertex_array: glow::VertexArray,
@@ -133,10 +135,10 @@ impl Gl {
 
     /// Uses a context that the host has already wrapped in glow 0.17.
     ///
-    /// glow lacks commands that read the state of one draw buffer or viewport, so with this constructor the
-    /// colour mask of draw buffer 0 is put back on all of them, as are the blending of the first, and the first
-    /// viewport, depth range and scissor test; conditional rendering is not noticed. [`Gl::from_loader`] puts
-    /// back each.
+    /// glow lacks commands that read the colour mask of one draw buffer, and the state of one viewport, so with
+    /// this constructor the mask of draw buffer 0 is put back on all of them, as are the first viewport, depth
+    /// range and scissor test; conditional rendering and another context are not noticed. [`Gl::from_loader`]
+    /// puts back each.
     ///
     /// # Errors
     /// [`Error::Version`] when the context is older than 3.3.
@@ -172,7 +174,7 @@ impl Gl {
         if version.is_embedded || (version.major, version.minor) < (3, 3) {
             return Err(Error::Version { version: info.version, renderer: info.renderer });
         }
-        let commands = commands.of_version(&glow);
+        let commands = commands.of_context(&glow);
         let extent = Extent::of(&glow, &commands);
         // SAFETY: the context is current, as the caller guarantees; creating objects changes no binding.
         let (vertex_array, nearest, nearest_mipmap) = unsafe {
@@ -188,6 +190,7 @@ impl Gl {
             commands,
             extent,
             info,
+            ended_query: Cell::new(None),
             groups_left: Cell::new(u32::MAX),
             vertex_array,
             nearest,
@@ -293,6 +296,9 @@ impl Drop for Inner {
         }
         // SAFETY: the context is current while the handle lives, and the names are ours.
         unsafe {
+            if let Some(query) = self.ended_query.get() {
+                self.glow.delete_query(query);
+            }
             self.glow.delete_vertex_array(self.vertex_array);
             self.glow.delete_sampler(self.nearest);
             self.glow.delete_sampler(self.nearest_mipmap);

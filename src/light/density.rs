@@ -124,7 +124,7 @@ impl DensityStage {
     /// Forgets all photons.
     ///
     /// # Errors
-    /// [`Error::HostState`](crate::Error::HostState).
+    /// [`Error::HostState`](crate::Error::HostState), [`Error::WrongContext`](crate::Error::WrongContext).
     pub fn clear(&mut self) -> Result<()> {
         let _state = StateGuard::new(&self.gl)?;
         self.forget();

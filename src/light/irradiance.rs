@@ -227,7 +227,7 @@ impl IrradiancePipeline {
     /// Forgets all photons and their light: when the camera or what it sees has moved.
     ///
     /// # Errors
-    /// [`Error::HostState`](crate::Error::HostState).
+    /// [`Error::HostState`](crate::Error::HostState), [`Error::WrongContext`](crate::Error::WrongContext).
     pub fn clear(&mut self) -> Result<()> {
         self.clear_photons()?;
         self.clear_light()?;

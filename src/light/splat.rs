@@ -100,7 +100,7 @@ impl SplatStage {
     /// Forgets all light.
     ///
     /// # Errors
-    /// [`Error::HostState`](crate::Error::HostState).
+    /// [`Error::HostState`](crate::Error::HostState), [`Error::WrongContext`](crate::Error::WrongContext).
     pub fn clear(&mut self) -> Result<()> {
         let _state = StateGuard::new(&self.gl)?;
         self.irradiance.target().clear_floats(&[Vec4::ZERO]);

@@ -259,3 +259,12 @@ fn the_printed_faults_are_not_certified() {
     let words = String::from_utf8_lossy(&refused.get_output().stderr).into_owned();
     assert!(words.contains("--method pyramid is not possible"), "{words}");
 }
+
+/// Where errors are not looked for, what would be one may end the process.
+#[test]
+fn a_driver_that_tells_no_errors_serves() {
+    let place = Workplace::new();
+    place.command("synth caustic --size 64x64 -o map.exr").assert().success();
+    let radius = "radius map.exr -n 25 -r 8 -o radius.npy --verify";
+    place.command(radius).env("MESA_NO_ERROR", "1").assert().success();
+}

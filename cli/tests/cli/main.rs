@@ -22,6 +22,7 @@ mod rule;
 mod saving;
 mod shell;
 mod stress;
+mod survey;
 mod synth;
 
 use std::collections::BTreeMap;

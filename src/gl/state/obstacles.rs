@@ -42,25 +42,50 @@ pub(super) fn none(gl: &Gl) -> Result<Option<Feedback>> {
             "call glUseProgram with another program, or 0, before",
         );
     }
-    if let Some(begin) = gl.commands().begin_conditional_render {
-        // SAFETY: the context is current. There is no query 0, so that nothing begins: while conditional
-        // rendering is on that is the error that is reported.
-        let code = unsafe {
-            begin(0, glow::QUERY_WAIT);
-            glow.get_error()
-        };
-        match code {
-            glow::INVALID_VALUE | glow::NO_ERROR => (),
-            glow::INVALID_OPERATION => {
-                return refuse(
-                    "conditional rendering is on, which may drop what the call draws",
-                    "call glEndConditionalRender before",
-                );
-            }
+    if is_rendering_conditionally(gl, glow)? {
+        return refuse(
+            "conditional rendering is on, which may drop what the call draws",
+            "call glEndConditionalRender before",
+        );
+    }
+    feedback(gl, glow)
+}
+
+/// OpenGL has no question for it, but allows no other to begin meanwhile. False where nothing tells.
+fn is_rendering_conditionally(gl: &Gl, glow: &glow::Context) -> Result<bool> {
+    let Some(commands) = gl.commands().conditional_render.filter(|_| gl.extent().tells_errors) else {
+        return Ok(false);
+    };
+    let Some(query) = ended_query(gl, glow) else { return Ok(false) };
+    // SAFETY: the context is current, and has these commands; what begins ends at once.
+    unsafe {
+        (commands.begin)(query.0.get(), glow::QUERY_NO_WAIT);
+        match glow.get_error() {
+            glow::NO_ERROR => (commands.end)(),
+            glow::INVALID_OPERATION => return Ok(true),
             other => return Err(gl.error(other, "what tells of conditional rendering", None)),
         }
     }
-    feedback(gl, glow)
+    Ok(false)
+}
+
+/// A query with a result. None while one of the host's runs that is of its kind.
+fn ended_query(gl: &Gl, glow: &glow::Context) -> Option<glow::Query> {
+    let kept = &gl.inner.ended_query;
+    if kept.get().is_none() {
+        // SAFETY: the context is current.
+        unsafe {
+            let query = glow.create_query().ok()?;
+            glow.begin_query(glow::ANY_SAMPLES_PASSED, query);
+            if glow.get_error() == glow::NO_ERROR {
+                glow.end_query(glow::ANY_SAMPLES_PASSED);
+                kept.set(Some(query));
+            } else {
+                glow.delete_query(query);
+            }
+        }
+    }
+    kept.get()
 }
 
 fn feedback(gl: &Gl, glow: &glow::Context) -> Result<Option<Feedback>> {
@@ -72,6 +97,9 @@ fn feedback(gl: &Gl, glow: &glow::Context) -> Result<Option<Feedback>> {
                 glow.pause_transform_feedback();
                 return Ok(Some(Feedback(gl.clone())));
             }
+            return Ok(None);
+        }
+        if !gl.extent().tells_errors {
             return Ok(None);
         }
         // OpenGL 3.3 does not tell, but allows no other program meanwhile.

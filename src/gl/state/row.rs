@@ -203,6 +203,10 @@ impl Row {
                     glow.depth_range_f64(near, far);
                 }
                 Setting::ClipControl => gl.set_clip_control(enums[0], enums[1]),
+                Setting::PolygonMode if gl.extent().is_compatible => {
+                    glow.polygon_mode(glow::FRONT, enums[0]);
+                    glow.polygon_mode(glow::BACK, enums[1]);
+                }
                 Setting::PolygonMode => glow.polygon_mode(glow::FRONT_AND_BACK, enums[0]),
                 Setting::StencilFunction(face) => {
                     glow.stencil_func_separate(face, enums[0], second, enums[2]);

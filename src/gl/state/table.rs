@@ -111,6 +111,7 @@ pub(super) static PASSES: &[Row] = &[
     row!(Setting::DepthMask, [DEPTH_WRITEMASK], Some(integer(1)), None),
     off!(DEPTH_CLAMP),
     off!(POLYGON_OFFSET_FILL),
+    off!(POLYGON_SMOOTH),
     // A vertex shader that draws points sets their size itself, where it draws them.
     off!(PROGRAM_POINT_SIZE),
     off!(CULL_FACE),
@@ -129,6 +130,7 @@ pub(super) static PASSES: &[Row] = &[
     ),
     of_compatibility!("GL_POLYGON_STIPPLE", 0x0B42),
     of_compatibility!("GL_ALPHA_TEST", 0x0BC0),
+    of_compatibility!("GL_POINT_SMOOTH", 0x0B10),
     off!(CLIP_DISTANCE0),
     off!(CLIP_DISTANCE1),
     off!(CLIP_DISTANCE2),

@@ -245,22 +245,16 @@ impl Shown<'_> {
         Around { samples, emitted, own }
     }
 
-    /// The darkest and the brightest that the middles of a pixel and of those around it emit.
+    /// The least and the most that the middles of a pixel and of those around it emit, in each colour.
     fn beside(&self, pixel: u32) -> [Vec3; 2] {
         let size = self.emitted.size().as_ivec2();
         let home = UVec2::new(pixel % self.emitted.size().x, pixel / self.emitted.size().x).as_ivec2();
         let inside = |at: &IVec2| at.cmpge(IVec2::ZERO).all() && at.cmplt(size).all();
         let around = square(1).map(|away| home + away).filter(inside).map(IVec2::as_uvec2);
         let mine = Vec3::from_array(self.emitted.values()[pixel as usize]);
-        around.map(|at| Vec3::from_array(self.emitted.at(at.x, at.y))).fold(
-            [mine; 2],
-            |[darkest, brightest], light| {
-                [
-                    if light.max_element() < darkest.max_element() { light } else { darkest },
-                    if light.max_element() > brightest.max_element() { light } else { brightest },
-                ]
-            },
-        )
+        // By colour: of lamps that are as bright in other colours, none is the darkest.
+        let lights = around.map(|at| Vec3::from_array(self.emitted.at(at.x, at.y)));
+        lights.fold([mine; 2], |[darkest, brightest], light| [darkest.min(light), brightest.max(light)])
     }
 
     /// The pixel whose middle is nearest on the same surface; or else on one that faces about the same way.

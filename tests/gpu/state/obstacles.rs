@@ -196,6 +196,7 @@ mod compatibility {
 
     const POLYGON_STIPPLE: u32 = 0x0B42;
     const ALPHA_TEST: u32 = 0x0BC0;
+    const POINT_SMOOTH: u32 = 0x0B10;
     const COMPILE: u32 = 0x1300;
 
     #[test]
@@ -203,11 +204,13 @@ mod compatibility {
         let context = compatible();
         let gl: &Gl = &context.gl;
         let (map, mut pipeline) = calls::uploaded(gl);
-        let capabilities = [POLYGON_STIPPLE, ALPHA_TEST];
+        let capabilities = [POLYGON_STIPPLE, ALPHA_TEST, POINT_SMOOTH];
         // SAFETY: the context is current, and one of compatibility.
         unsafe {
             (context.polygon_stipple)([0x55_u8; 128].as_ptr());
             (context.alpha_func)(glow::NEVER, 0.5);
+            gl.glow().polygon_mode(glow::FRONT, glow::LINE);
+            gl.glow().polygon_mode(glow::BACK, glow::POINT);
             for capability in capabilities {
                 gl.glow().enable(capability);
             }
@@ -218,6 +221,10 @@ mod compatibility {
             // SAFETY: as above.
             assert!(unsafe { gl.glow().is_enabled(capability) }, "{capability:#06x}");
         }
+        let mut modes = [0; 2];
+        // SAFETY: as above; it has two values.
+        unsafe { gl.glow().get_parameter_i32_slice(glow::POLYGON_MODE, &mut modes) };
+        assert_eq!(modes.map(i32::cast_unsigned), [glow::LINE, glow::POINT], "front and back apart");
     }
 
     #[test]
