@@ -531,7 +531,8 @@ const char *varikernel_last_error(void);
 
 /**
  * Hands lines of the log to `log` from now on, up to the level `most`: one of VARIKERNEL_LOG_... Null for `log`
- * ends that. For the whole process; nothing is logged before.
+ * ends that, but for lines that other threads are just handing on: `user` outlives those. For the whole
+ * process; nothing is logged before.
  *
  * Fails with SETTING for another level, and with INTERNAL where the process hands lines of Rust's `tracing` to
  * another receiver already.

@@ -113,6 +113,11 @@ logged! {
     glCheckFramebufferStatus(target: u32) -> u32;
     glIsEnabled(state: u32) -> u8;
     glIsEnabledi(state: u32, index: u32) -> u8;
+    glIsBuffer(name: u32) -> u8;
+    glGetBufferParameteriv(target: u32, state: u32, value: *mut i32) -> ();
+    glGetDoublev(state: u32, values: *mut f64) -> ();
+    glGetDoublei_v(state: u32, index: u32, values: *mut f64) -> ();
+    glGetFloati_v(state: u32, index: u32, values: *mut f32) -> ();
     glGetTexImage(target: u32, level: i32, format: u32, kind: u32, pixels: *mut c_void) -> ();
     glGetBufferSubData(target: u32, offset: isize, size: isize, data: *mut c_void) -> ();
     glGetQueryObjectiv(name: u32, state: u32, value: *mut i32) -> ();

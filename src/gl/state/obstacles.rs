@@ -56,36 +56,45 @@ fn is_rendering_conditionally(gl: &Gl, glow: &glow::Context) -> Result<bool> {
     let Some(commands) = gl.commands().conditional_render.filter(|_| gl.extent().tells_errors) else {
         return Ok(false);
     };
-    let Some(query) = ended_query(gl, glow) else { return Ok(false) };
+    let Some(query) = ended_query(gl, glow)? else { return Ok(false) };
     // SAFETY: the context is current, and has these commands; what begins ends at once.
     unsafe {
         (commands.begin)(query.0.get(), glow::QUERY_NO_WAIT);
         match glow.get_error() {
             glow::NO_ERROR => (commands.end)(),
             glow::INVALID_OPERATION => return Ok(true),
-            other => return Err(gl.error(other, "what tells of conditional rendering", None)),
+            // An error of something else, which is told here.
+            other => {
+                (commands.end)();
+                return Err(gl.error(other, "what tells of conditional rendering", None));
+            }
         }
     }
     Ok(false)
 }
 
 /// A query with a result. None while one of the host's runs that is of its kind.
-fn ended_query(gl: &Gl, glow: &glow::Context) -> Option<glow::Query> {
+fn ended_query(gl: &Gl, glow: &glow::Context) -> Result<Option<glow::Query>> {
     let kept = &gl.inner.ended_query;
-    if kept.get().is_none() {
-        // SAFETY: the context is current.
-        unsafe {
-            let query = glow.create_query().ok()?;
-            glow.begin_query(glow::ANY_SAMPLES_PASSED, query);
-            if glow.get_error() == glow::NO_ERROR {
-                glow.end_query(glow::ANY_SAMPLES_PASSED);
-                kept.set(Some(query));
-            } else {
-                glow.delete_query(query);
-            }
+    if kept.get().is_some() {
+        return Ok(kept.get());
+    }
+    // SAFETY: the context is current.
+    unsafe {
+        let query = glow.create_query().map_err(|what| gl.failure(&what))?;
+        glow.begin_query(glow::ANY_SAMPLES_PASSED, query);
+        let code = glow.get_error();
+        if code == glow::INVALID_OPERATION {
+            glow.delete_query(query);
+            return Ok(None);
+        }
+        glow.end_query(glow::ANY_SAMPLES_PASSED);
+        kept.set(Some(query));
+        if code != glow::NO_ERROR {
+            return Err(gl.error(code, "what tells of conditional rendering", None));
         }
     }
-    kept.get()
+    Ok(kept.get())
 }
 
 fn feedback(gl: &Gl, glow: &glow::Context) -> Result<Option<Feedback>> {
