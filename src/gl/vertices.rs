@@ -49,22 +49,16 @@ impl Vertices {
         Ok(owned)
     }
 
-    /// Reads `count` vertices from `first` on of a buffer that stays the host's.
+    /// Whether a buffer of the host has room for `count` vertices.
     ///
     /// # Errors
-    /// [`Error::Mismatch`] if it is no buffer, or has no room for them; [`Error::OutOfMemory`].
-    pub(crate) fn borrow(
-        gl: &Gl,
-        buffer: glow::Buffer,
-        first: u32,
-        count: u32,
-        components: &[u8],
-    ) -> Result<Self> {
+    /// [`Error::Mismatch`] if it is no buffer, or has not.
+    pub(crate) fn check_room(gl: &Gl, buffer: glow::Buffer, count: u32, components: &[u8]) -> Result<()> {
         let bytes = u64::try_from(vertex_bytes(components)).expect("few bytes");
-        let needed = bytes * (u64::from(first) + u64::from(count));
+        let needed = bytes * u64::from(count);
         let mismatch = |got: String| Error::Mismatch {
             what: "host's vertex buffer",
-            expected: format!("at least {needed} bytes"),
+            expected: format!("{count} vertices of {bytes} bytes, {needed} bytes in all"),
             got,
         };
         let glow = gl.current()?;
@@ -74,11 +68,27 @@ impl Vertices {
                 return Err(mismatch("a name that is no buffer, or was never bound".to_owned()));
             }
             glow.bind_buffer(glow::ARRAY_BUFFER, Some(buffer));
-            glow.get_buffer_parameter_i32(glow::ARRAY_BUFFER, glow::BUFFER_SIZE)
+            u64::from(glow.get_buffer_parameter_i32(glow::ARRAY_BUFFER, glow::BUFFER_SIZE).cast_unsigned())
         };
-        if u64::from(size.cast_unsigned()) < needed {
-            return Err(mismatch(format!("{} bytes", size.cast_unsigned())));
+        if size < needed {
+            return Err(mismatch(format!("{size} bytes, room for {}", size / bytes)));
         }
+        Ok(())
+    }
+
+    /// Reads `count` vertices from `first` on of a buffer that stays the host's, and [has
+    /// room](Self::check_room) for them.
+    ///
+    /// # Errors
+    /// [`Error::Mismatch`] if they are too far into it; [`Error::OutOfMemory`].
+    pub(crate) fn borrow(
+        gl: &Gl,
+        buffer: glow::Buffer,
+        first: u32,
+        count: u32,
+        components: &[u8],
+    ) -> Result<Self> {
+        let bytes = u64::try_from(vertex_bytes(components)).expect("few bytes");
         let Ok(offset) = i32::try_from(bytes * u64::from(first)) else {
             return Err(Error::Mismatch {
                 what: "host's vertex buffer",

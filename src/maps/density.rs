@@ -63,7 +63,7 @@ impl DensityMap {
     /// level 0 as its base and red where red belongs.
     pub fn borrow(gl: &Gl, texture: glow::Texture, bounds: CountBounds) -> Result<Self> {
         let _state = StateGuard::new(gl)?;
-        Ok(Self { texture: Texture::borrow(gl, texture)?, bounds })
+        Ok(Self { texture: Texture::borrow_map(gl, texture, "host's density map")?, bounds })
     }
 
     /// The counts that a stage adds up in a texture of its own, none yet.

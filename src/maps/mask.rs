@@ -3,7 +3,7 @@
 use glam::UVec2;
 
 use super::host_depth::HostDepth;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::gl::{
     FragmentTest, Gl, Pass, Program, ShaderSource, StateGuard, Target, Texture, TextureFormat, fill_where,
     glsl,
@@ -27,7 +27,7 @@ impl Mask {
     /// Makes a texture of `mask`.
     ///
     /// # Errors
-    /// [`Error::TooLarge`]; [`Error::OutOfMemory`].
+    /// [`Error::TooLarge`](crate::Error::TooLarge); [`Error::OutOfMemory`](crate::Error::OutOfMemory).
     pub fn upload(gl: &Gl, mask: &Image<u8>) -> Result<Self> {
         let _state = StateGuard::new(gl)?;
         let texture = Texture::new(gl, TextureFormat::R8Uint, mask.size(), 1)?.labelled("mask");
@@ -40,25 +40,19 @@ impl Mask {
     /// frames.
     ///
     /// # Errors
-    /// [`Error::Mismatch`] unless it is a GL_TEXTURE_2D of one of the formats above, with level 0
-    /// as its base and red where red belongs.
+    /// [`Error::Mismatch`](crate::Error::Mismatch) unless it is a GL_TEXTURE_2D of one of the formats above, with
+    /// level 0 as its base and red where red belongs.
     pub fn borrow(gl: &Gl, texture: glow::Texture) -> Result<Self> {
         let _state = StateGuard::new(gl)?;
-        let texture = Texture::borrow(gl, texture)?;
-        if texture.format().is_float() {
-            return Err(Error::Mismatch {
-                what: "mask",
-                expected: "GL_R8UI, GL_R16UI or GL_R32UI".to_owned(),
-                got: texture.format().name().to_owned(),
-            });
-        }
+        let formats = [TextureFormat::R8Uint, TextureFormat::R16Uint, TextureFormat::R32Uint];
+        let texture = Texture::borrow_as(gl, texture, "mask", &formats)?;
         Ok(Self { texture, every_pixel: false })
     }
 
     /// One texel for all pixels, whatever the map's size: what is bound where a frame has no mask.
     ///
     /// # Errors
-    /// [`Error::OutOfMemory`].
+    /// [`Error::OutOfMemory`](crate::Error::OutOfMemory).
     pub(crate) fn of_every_pixel(gl: &Gl) -> Result<Self> {
         let mask = Self::upload(gl, &Image::filled(UVec2::ONE, 1))?;
         Ok(Self { every_pixel: true, ..mask })
@@ -97,7 +91,8 @@ impl MaskMaker {
     /// Allocates and compiles for masks of `size`.
     ///
     /// # Errors
-    /// [`Error::TooLarge`]; [`Error::Shader`] if the driver refuses the shader; [`Error::OutOfMemory`].
+    /// [`Error::TooLarge`](crate::Error::TooLarge); [`Error::Shader`](crate::Error::Shader) if the driver refuses
+    /// the shader; [`Error::OutOfMemory`](crate::Error::OutOfMemory).
     pub fn new(gl: &Gl, size: UVec2) -> Result<Self> {
         let _state = StateGuard::new(gl)?;
         let target =
@@ -110,7 +105,8 @@ impl MaskMaker {
     /// it is reversed.
     ///
     /// # Errors
-    /// [`Error::Mismatch`] unless it is a GL_TEXTURE_2D with depth, of the masks' size.
+    /// [`Error::Mismatch`](crate::Error::Mismatch) unless it is a GL_TEXTURE_2D with depth, of the masks'
+    /// size.
     pub fn from_depth(&mut self, depth: HostDepth) -> Result<&Mask> {
         self.make(depth.texture, FragmentTest::Depth { reversed: depth.reversed })
     }
@@ -118,7 +114,8 @@ impl MaskMaker {
     /// Pixels whose stencil value equals `reference` in the bits that are set in `bits`.
     ///
     /// # Errors
-    /// [`Error::Mismatch`] unless `stencil` is a GL_TEXTURE_2D with stencil, of the masks' size.
+    /// [`Error::Mismatch`](crate::Error::Mismatch) unless `stencil` is a GL_TEXTURE_2D with stencil, of the
+    /// masks' size.
     pub fn from_stencil(&mut self, stencil: glow::Texture, reference: u8, bits: u8) -> Result<&Mask> {
         self.make(stencil, FragmentTest::Stencil { reference, bits })
     }

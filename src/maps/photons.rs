@@ -42,6 +42,9 @@ impl PhotonPoints {
     /// [`Error::Mismatch`] if it is no buffer, or has no room for them; [`Error::Gl`] when names run out.
     pub fn borrow(gl: &Gl, buffer: glow::Buffer, count: u32) -> Result<Self> {
         let _state = StateGuard::new(gl)?;
+        if count > 0 {
+            Vertices::check_room(gl, buffer, count, &PhotonPoint::ATTRIBUTES)?;
+        }
         let chunks = (0..count).step_by(CHUNK as usize).map(|first| {
             Vertices::borrow(gl, buffer, first, CHUNK.min(count - first), &PhotonPoint::ATTRIBUTES)
         });

@@ -41,8 +41,10 @@ impl RadiusMap {
     /// level 0 as their base and red where red belongs; [`Error::Gl`] if the driver can't draw to them.
     pub fn borrow(gl: &Gl, radii: glow::Texture, limited: Option<glow::Texture>) -> Result<Self> {
         let _state = StateGuard::new(gl)?;
-        let mut textures = vec![Texture::borrow(gl, radii)?];
-        textures.extend(limited.map(|limited| Texture::borrow(gl, limited)).transpose()?);
+        let mut textures = vec![Texture::borrow_map(gl, radii, "host's radius map")?];
+        textures.extend(
+            limited.map(|limited| Texture::borrow_map(gl, limited, "host's limited mask")).transpose()?,
+        );
         let size = textures[0].size();
         for (texture, format) in textures.iter().zip(Self::formats(true)) {
             if (texture.size(), texture.format()) != (size, format) {

@@ -9,7 +9,7 @@ use std::sync::OnceLock;
 use crate::root;
 
 /// What a command that worked wrote to stdout.
-fn run(command: &mut Command) -> String {
+pub(crate) fn run(command: &mut Command) -> String {
     let output = command.output().unwrap_or_else(|error| panic!("{command:?}: {error}"));
     let text = |bytes| String::from_utf8_lossy(bytes).into_owned();
     let (stdout, stderr) = (text(&output.stdout), text(&output.stderr));
@@ -18,32 +18,29 @@ fn run(command: &mut Command) -> String {
 }
 
 /// A folder of this test's own, below `target`.
-fn work_folder() -> PathBuf {
+pub(crate) fn work_folder() -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("capi");
     fs::create_dir_all(&folder).unwrap();
     folder
 }
 
-/// The shared library, built as `docs/engines.md` says, once for all tests; its folder.
-fn library() -> &'static Path {
-    static FOLDER: OnceLock<PathBuf> = OnceLock::new();
-    FOLDER.get_or_init(|| {
-        run(Command::new(env!("CARGO"))
-            .args([
-                "rustc",
-                "--lib",
-                "--no-default-features",
-                "--features",
-                "capi",
-                "--crate-type",
-                "cdylib",
-                "--locked",
-            ])
-            .arg("--target-dir")
-            .arg(work_folder())
-            .current_dir(root()));
-        work_folder().join("debug")
+/// Where `include/install` has put everything, once for all tests.
+pub(crate) fn installed() -> &'static Path {
+    static PREFIX: OnceLock<PathBuf> = OnceLock::new();
+    PREFIX.get_or_init(|| {
+        let prefix = work_folder().join("prefix");
+        let words = run(Command::new(root().join("include/install"))
+            .arg(&prefix)
+            .args(["--profile", "dev"])
+            .env("CARGO_TARGET_DIR", work_folder()));
+        assert!(words.contains(concat!("installed: varikernel ", env!("CARGO_PKG_VERSION"))), "{words}");
+        prefix
     })
+}
+
+/// The folder of the libraries.
+fn library() -> PathBuf {
+    installed().join("lib")
 }
 
 /// C99 or C++, without a warning.
@@ -63,7 +60,7 @@ pub(crate) fn compile_and_run(mut compiler: Command, source: &str) -> String {
         .args(["-O2", "-pthread", "-o"])
         .arg(&program)
         .arg("-L")
-        .arg(library)
+        .arg(&library)
         .arg(format!("-Wl,-rpath,{}", library.display()))
         .args(["-lvarikernel", "-lEGL", "-lOpenGL", "-lm"]));
     run(&mut Command::new(program))

@@ -18,12 +18,12 @@ const SWIZZLES: [(u32, u32, &str); 4] = [
 ];
 
 impl Texture {
-    /// Wraps a map that stays the host's, after querying what it is.
+    /// Wraps a map that stays the host's, after querying what it is; `what` is for errors.
     ///
     /// # Errors
     /// [`Error::Mismatch`] if it is not a two-dimensional texture of a known format with level 0 as its base.
-    pub(crate) fn borrow(gl: &Gl, name: glow::Texture) -> Result<Self> {
-        Self::borrow_as(gl, name, "host texture", &TextureFormat::OF_MAPS)
+    pub(crate) fn borrow_map(gl: &Gl, name: glow::Texture, what: &'static str) -> Result<Self> {
+        Self::borrow_as(gl, name, what, &TextureFormat::OF_MAPS)
     }
 
     /// Wraps a texture of one of `formats` that stays the host's; `what` it is, for errors.
