@@ -204,6 +204,7 @@ impl Gl {
         };
         let gl = Self { inner: Rc::new(inner), state_policy: StatePolicy::Restore };
         gl.label_own_objects();
+        state::prepare(&gl)?;
         Ok(gl)
     }
 

@@ -77,13 +77,14 @@ impl Calls {
         self.before = now();
     }
 
-    /// Names and numbers of the commands that were called.
+    /// Names and numbers of the commands of OpenGL that were called; which context is current is asked of EGL.
     pub(crate) fn all(&self) -> Vec<(String, u64)> {
         let names = NAMES.lock().unwrap();
         let calls = now();
         let since =
             names.iter().enumerate().map(|(index, (name, _))| (name, calls[index] - self.before[index]));
-        since.filter(|&(_, calls)| calls > 0).map(|(name, calls)| (name.clone(), calls)).collect()
+        let of_opengl = since.filter(|(name, _)| name.starts_with("gl"));
+        of_opengl.filter(|&(_, calls)| calls > 0).map(|(name, calls)| (name.clone(), calls)).collect()
     }
 
     pub(crate) fn of(&self, name: &str) -> u64 {

@@ -7,6 +7,7 @@ mod table;
 pub(super) use row::{DRAW_BUFFERS, UNITS};
 
 use obstacles::Feedback;
+pub(super) use obstacles::prepare;
 use row::{Row, Values};
 use table::{DEPTH_TESTS, PASSES, STENCIL_TESTS};
 

@@ -73,6 +73,18 @@ fn is_rendering_conditionally(gl: &Gl, glow: &glow::Context) -> Result<bool> {
     Ok(false)
 }
 
+/// Makes what [`none`] asks with, where nothing of the host's is in the way yet.
+///
+/// # Errors
+/// Those of OpenGL.
+pub(in crate::gl) fn prepare(gl: &Gl) -> Result<()> {
+    if gl.commands().conditional_render.is_some() && gl.extent().tells_errors {
+        gl.forget_errors();
+        ended_query(gl, gl.current()?)?;
+    }
+    Ok(())
+}
+
 /// A query with a result. None while one of the host's runs that is of its kind.
 fn ended_query(gl: &Gl, glow: &glow::Context) -> Result<Option<glow::Query>> {
     let kept = &gl.inner.ended_query;
