@@ -83,7 +83,7 @@ impl Part {
             Self::Fast => format!("bench --suite fast --budget {seconds} --json {json}"),
             Self::Picture => {
                 format!(
-                    "bench --suite picture --sizes 512,1920x1080 --photons 1e5,1e6 --budget {seconds} --json {json}"
+                    "bench --suite picture --sizes 1920x1080 --photons 1e6 --budget {seconds} --json {json}"
                 )
             }
             Self::Reproduction => format!("reproduce -o reproduction --budget {seconds}"),
