@@ -1,10 +1,9 @@
 //! `varikernel study --against`: pictures of other renderers beside ours.
 
-use std::fs;
 use std::io::Write as _;
 use std::path::Path;
 
-use anyhow::{Context as _, Result};
+use anyhow::Result;
 use varikernel::image::{check_writable, write_atomically};
 use varikernel_lab::against::Against;
 
@@ -13,7 +12,7 @@ use super::{Outcome, output};
 
 /// Judges the pictures that a file names, and writes what was found into a folder.
 pub(super) fn run(file: &Path, folder: &Path, json: bool) -> Result<Outcome> {
-    fs::create_dir_all(folder).with_context(|| format!("can't make the folder {}", folder.display()))?;
+    output::make_folder(folder)?;
     let [html, csv, whole] = ["html", "csv", "json"].map(|kind| folder.join(format!("against.{kind}")));
     for path in [&html, &csv, &whole] {
         check_writable(path)?;

@@ -2,15 +2,15 @@
 //! first.
 
 use std::env;
-use std::io::Read;
-use std::process::{Child, Command, ExitStatus, Stdio};
-use std::thread;
-use std::time::{Duration, Instant};
+use std::process::{Command, Stdio};
+use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 use varikernel::context::{self, Candidate, DeviceChoice, Refusal};
 use varikernel::gl::{DeviceInfo, Gl};
 use varikernel::{Error, Result};
+
+use super::child::{reader, wait};
 
 /// A driver that takes longer is taken to hang.
 const LIMIT: Duration = Duration::from_mins(1);
@@ -135,32 +135,6 @@ fn answer_of(mut command: Command, limit: Duration) -> Answer {
             let Refusal { reason, remedy } = context::unexplained(&with_words(end, &words));
             Answer::Fails { error: reason, remedy, crashed: true }
         }
-    }
-}
-
-/// Everything that comes out of a pipe, read beside the child so that it never waits for us.
-fn reader(pipe: Option<impl Read + Send + 'static>) -> thread::JoinHandle<Vec<u8>> {
-    thread::spawn(move || {
-        let mut bytes = Vec::new();
-        // A broken pipe gives no more than it held so far.
-        let _read = pipe.map(|mut pipe| pipe.read_to_end(&mut bytes));
-        bytes
-    })
-}
-
-/// How the child ends; nothing if it has to be ended after `limit`.
-fn wait(child: &mut Child, limit: Duration) -> std::io::Result<Option<ExitStatus>> {
-    let start = Instant::now();
-    loop {
-        if let Some(status) = child.try_wait()? {
-            return Ok(Some(status));
-        }
-        if start.elapsed() > limit {
-            child.kill()?;
-            child.wait()?;
-            return Ok(None);
-        }
-        thread::sleep(Duration::from_millis(5));
     }
 }
 

@@ -1,9 +1,8 @@
 //! `varikernel study --flicker`: noise between frames.
 
-use std::fs;
 use std::path::Path;
 
-use anyhow::{Context as _, Result};
+use anyhow::Result;
 use varikernel::context::DeviceChoice;
 use varikernel::image::check_writable;
 use varikernel_lab::flicker::{self, FlickerStudy};
@@ -13,7 +12,7 @@ use super::{Outcome, device, output};
 
 /// Measures every way to light, and writes what was found into a folder.
 pub(super) fn run(device: &DeviceChoice, folder: &Path, is_quick: bool, json: bool) -> Result<Outcome> {
-    fs::create_dir_all(folder).with_context(|| format!("can't make the folder {}", folder.display()))?;
+    output::make_folder(folder)?;
     let path = folder.join("flicker.json");
     check_writable(&path)?;
     let gl = device::open(device)?;

@@ -1,10 +1,9 @@
 //! `varikernel glsl`: our shaders as text, for engines with code of their own.
 
-use std::fs;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context as _, Result, anyhow};
+use anyhow::{Result, anyhow};
 use clap::ValueEnum;
 use serde::Serialize;
 use varikernel::gl::{Interface, ShaderSource, ShaderStage, TextureFormat};
@@ -302,7 +301,7 @@ fn write_stages(source: &ShaderSource, stages: &[ShaderStage], folder: &Path) ->
 }
 
 fn make_folder(folder: &Path) -> Result<()> {
-    fs::create_dir_all(folder).with_context(|| format!("can't make the folder {}", folder.display()))
+    output::make_folder(folder)
 }
 
 fn write(path: &Path, text: &str) -> Result<()> {

@@ -2,6 +2,7 @@
 
 mod against;
 mod bench;
+mod child;
 mod compare;
 mod completions;
 mod device;

@@ -1,10 +1,9 @@
 //! `varikernel man`: manual pages, one for the program and one for each verb.
 
-use std::fs;
 use std::io::Write as _;
 use std::path::PathBuf;
 
-use anyhow::{Context as _, Result};
+use anyhow::Result;
 use clap_mangen::Man;
 use varikernel::image::write_atomically;
 
@@ -22,7 +21,7 @@ pub(crate) struct Args {
 
 pub(crate) fn run(args: &Args) -> Result<Outcome> {
     let folder = &args.output;
-    fs::create_dir_all(folder).with_context(|| format!("can't make the folder {}", folder.display()))?;
+    output::make_folder(folder)?;
     let mut whole = super::command().disable_help_subcommand(true);
     // Names each verb as its page is called.
     whole.build();

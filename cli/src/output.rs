@@ -1,5 +1,6 @@
 //! What goes to stdout and stderr, and whether files can take the rest.
 
+use std::fs;
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
@@ -11,6 +12,11 @@ use varikernel::image::{check_writable, output_place};
 
 /// Columns of a terminal that tables fit into.
 const WIDTH: u16 = 80;
+
+/// A folder for outputs, with those above it.
+pub(crate) fn make_folder(folder: &Path) -> Result<()> {
+    fs::create_dir_all(folder).with_context(|| format!("can't make the folder {}", folder.display()))
+}
 
 /// One JSON object and a newline.
 pub(crate) fn print_json(value: &impl Serialize) -> Result<()> {

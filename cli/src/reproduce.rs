@@ -1,10 +1,9 @@
 //! `varikernel reproduce`: the thesis's tables and claims on this machine.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use anyhow::{Context as _, Result, bail};
+use anyhow::{Result, bail};
 use indicatif::{ProgressBar, ProgressStyle};
 use varikernel::context::DeviceChoice;
 use varikernel::gl::Gl;
@@ -56,7 +55,7 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
         bail!("--budget {budget:?} is not possible: give at least 5s, for a sample of the smallest maps");
     }
     for folder in [args.output.clone(), args.output.join("tables"), args.output.join("figures")] {
-        fs::create_dir_all(&folder).with_context(|| format!("can't make the folder {}", folder.display()))?;
+        output::make_folder(&folder)?;
     }
     let run_json = args.output.join("run.json");
     check_writable(&run_json)?;

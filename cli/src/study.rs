@@ -107,8 +107,7 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
     let settings = args.extent.settings();
     let files = Files { folder: &args.output };
     let earlier = if args.resume { Some(files.load()?) } else { None };
-    fs::create_dir_all(&args.output)
-        .with_context(|| format!("can't make the folder {}", args.output.display()))?;
+    output::make_folder(&args.output)?;
     files.check()?;
     let gl = device::open(&args.device)?;
     if let Some((earlier, path)) = &earlier {

@@ -5,6 +5,8 @@ use std::ffi::{CStr, c_void};
 use glow::HasContext as _;
 
 use super::Gl;
+use super::home::Home;
+use super::loader::command;
 
 type GetBooleans = unsafe extern "system" fn(parameter: u32, index: u32, values: *mut u8);
 type IsEnabled = unsafe extern "system" fn(capability: u32, index: u32) -> u8;
@@ -13,19 +15,7 @@ type GetIndexedFloats = unsafe extern "system" fn(parameter: u32, index: u32, va
 type GetIndexedDoubles = unsafe extern "system" fn(parameter: u32, index: u32, values: *mut f64);
 type ClipControl = unsafe extern "system" fn(origin: u32, depth: u32);
 type BeginConditionalRender = unsafe extern "system" fn(query: u32, mode: u32);
-
 type EndConditionalRender = unsafe extern "system" fn();
-type GetCurrentContext = unsafe extern "system" fn() -> *const c_void;
-
-/// The command of that name, as a pointer to a function of the given type.
-macro_rules! command {
-    ($loader:ident, $name:expr, $type:ty) => {{
-        let address = $loader($name);
-        // SAFETY: the caller of `Gl::from_loader` guarantees that this is the address of the command, which has
-        // this type.
-        (!address.is_null()).then(|| unsafe { std::mem::transmute::<*const c_void, $type>(address) })
-    }};
-}
 
 /// Commands, where the loader has them.
 #[derive(Debug, Default)]
@@ -45,36 +35,6 @@ pub(super) struct Commands {
     pub(super) pauses_feedback: bool,
     /// KHR_debug, or OpenGL 4.3: passes and objects can be named.
     pub(super) names_things: bool,
-}
-
-/// The context that the commands are of, as its platform names it.
-#[derive(Clone, Copy, Debug)]
-struct Home {
-    get_current_context: GetCurrentContext,
-    context: *const c_void,
-}
-
-impl Home {
-    /// Of the context that is current, where the loader knows its platform.
-    fn of(loader: &mut impl FnMut(&CStr) -> *const c_void) -> Option<Self> {
-        // Some loaders make up a command for every name, as GLX's does, or for those that begin with "gl".
-        let is_of_glx = !loader(c"eglGetNoContextAtAll").is_null();
-        let makes_up_gl = !is_of_glx && !loader(c"glXGetNoContextAtAll").is_null();
-        let platforms: [(&CStr, bool); 5] = [
-            (c"eglGetCurrentContext", !is_of_glx),
-            (c"OSMesaGetCurrentContext", !is_of_glx),
-            (c"wglGetCurrentContext", !is_of_glx),
-            (c"CGLGetCurrentContext", !is_of_glx),
-            (c"glXGetCurrentContext", !makes_up_gl),
-        ];
-        platforms.into_iter().filter(|&(_, is_known)| is_known).find_map(|(name, _)| {
-            let get_current_context = command!(loader, name, GetCurrentContext)?;
-            // SAFETY: the command takes nothing, and may be called at any time.
-            let context = unsafe { get_current_context() };
-            // Another platform's context is none of this one.
-            (!context.is_null()).then_some(Self { get_current_context, context })
-        })
-    }
 }
 
 /// What tells whether conditional rendering is on.
@@ -125,8 +85,7 @@ impl Commands {
 
     /// Whether the context that they were loaded in is current.
     pub(super) fn is_at_home(&self) -> bool {
-        // SAFETY: the command takes nothing, and may be called at any time.
-        self.home.is_none_or(|home| unsafe { (home.get_current_context)() } == home.context)
+        self.home.is_none_or(Home::is_current)
     }
 
     /// Without those that the context does not have: a loader may know commands of any version.
@@ -143,110 +102,6 @@ impl Commands {
         self
     }
 }
-
-/// What a loader has to find: the commands of OpenGL 3.3 core that the library calls.
-pub(super) const REQUIRED: [&CStr; 100] = [
-    c"glActiveTexture",
-    c"glAttachShader",
-    c"glBeginQuery",
-    c"glBindBuffer",
-    c"glBindFramebuffer",
-    c"glBindSampler",
-    c"glBindTexture",
-    c"glBindVertexArray",
-    c"glBlendEquation",
-    c"glBlendEquationSeparate",
-    c"glBlendFunc",
-    c"glBlendFuncSeparate",
-    c"glBufferData",
-    c"glCheckFramebufferStatus",
-    c"glClearBufferfv",
-    c"glClearBufferuiv",
-    c"glClientWaitSync",
-    c"glColorMaski",
-    c"glCompileShader",
-    c"glCreateProgram",
-    c"glCreateShader",
-    c"glDeleteBuffers",
-    c"glDeleteFramebuffers",
-    c"glDeleteProgram",
-    c"glDeleteQueries",
-    c"glDeleteSamplers",
-    c"glDeleteShader",
-    c"glDeleteSync",
-    c"glDeleteTextures",
-    c"glDeleteVertexArrays",
-    c"glDepthFunc",
-    c"glDepthMask",
-    c"glDepthRange",
-    c"glDisable",
-    c"glDisablei",
-    c"glDrawArrays",
-    c"glDrawArraysInstanced",
-    c"glDrawBuffers",
-    c"glEnable",
-    c"glEnableVertexAttribArray",
-    c"glEnablei",
-    c"glEndQuery",
-    c"glFenceSync",
-    c"glFinish",
-    c"glFramebufferTexture2D",
-    c"glFramebufferTextureLayer",
-    c"glGenBuffers",
-    c"glGenFramebuffers",
-    c"glGenQueries",
-    c"glGenSamplers",
-    c"glGenTextures",
-    c"glGenVertexArrays",
-    c"glGenerateMipmap",
-    c"glGetActiveUniform",
-    c"glGetBooleani_v",
-    c"glGetBufferParameteriv",
-    c"glGetBufferSubData",
-    c"glGetDoublev",
-    c"glGetError",
-    c"glGetFloatv",
-    c"glGetIntegeri_v",
-    c"glGetIntegerv",
-    c"glGetProgramInfoLog",
-    c"glGetProgramiv",
-    c"glGetQueryObjectui64v",
-    c"glGetShaderInfoLog",
-    c"glGetShaderiv",
-    c"glGetStringi",
-    c"glGetTexImage",
-    c"glGetTexLevelParameteriv",
-    c"glGetTexParameteriv",
-    c"glGetUniformLocation",
-    c"glIsBuffer",
-    c"glIsEnabled",
-    c"glIsEnabledi",
-    c"glLinkProgram",
-    c"glPixelStorei",
-    c"glPolygonMode",
-    c"glQueryCounter",
-    c"glReadPixels",
-    c"glSamplerParameteri",
-    c"glShaderSource",
-    c"glStencilFunc",
-    c"glStencilFuncSeparate",
-    c"glStencilOp",
-    c"glStencilOpSeparate",
-    c"glTexImage2D",
-    c"glTexImage3D",
-    c"glTexParameteri",
-    c"glTexSubImage2D",
-    c"glUniform1f",
-    c"glUniform1i",
-    c"glUniform1ui",
-    c"glUniform2i",
-    c"glUniform3f",
-    c"glUniformMatrix4fv",
-    c"glUseProgram",
-    c"glVertexAttribDivisor",
-    c"glVertexAttribPointer",
-    c"glViewport",
-];
 
 /// What a context has more than OpenGL 3.3 core does, as far as a host's state is concerned.
 #[derive(Clone, Copy, Debug, Default)]

@@ -12,8 +12,10 @@ mod commands;
 mod device_info;
 mod errors;
 mod fragment_test;
+mod home;
 mod interface;
 mod label;
+mod loader;
 mod pass;
 mod preprocessor;
 mod program;
@@ -118,14 +120,7 @@ impl Gl {
         mut loader: impl FnMut(&CStr) -> *const c_void,
         context: Option<Box<dyn Any>>,
     ) -> Result<Self> {
-        let version = check_current(&mut loader)?;
-        // Of an older context, the version is what is wrong.
-        if is_3_3(version) {
-            let missing = commands::REQUIRED.into_iter().find(|command| loader(command).is_null());
-            if let Some(command) = missing {
-                return Err(Error::MissingCommand { command: command.to_string_lossy().into_owned() });
-            }
-        }
+        loader::check(&mut loader)?;
         let commands = Commands::load(&mut loader);
         // SAFETY: the caller guarantees for the loader; a current context was just seen.
         let glow = unsafe { glow::Context::from_loader_function_cstr(loader) };
@@ -305,32 +300,6 @@ impl Drop for Inner {
             self.glow.delete_sampler(self.nearest_mipmap);
         }
     }
-}
-
-/// Whether GL_VERSION begins with 3.3 or more.
-fn is_3_3(version: &CStr) -> bool {
-    let text = version.to_string_lossy();
-    let number = text.split(' ').next().unwrap_or_default();
-    let mut parts = number.split('.').map(|part| part.parse::<u32>().unwrap_or(0));
-    (parts.next().unwrap_or(0), parts.next().unwrap_or(0)) >= (3, 3)
-}
-
-/// GL_VERSION. glow panics where no context is current; this returns an error instead.
-fn check_current<'a>(loader: &mut impl FnMut(&CStr) -> *const c_void) -> Result<&'a CStr> {
-    type GetString = unsafe extern "system" fn(name: u32) -> *const u8;
-    let get_string = loader(c"glGetString");
-    if get_string.is_null() {
-        return Err(Error::no_current_context("the loader does not know glGetString"));
-    }
-    // SAFETY: the caller of `from_loader` guarantees that this is the address of glGetString.
-    let get_string = unsafe { std::mem::transmute::<*const c_void, GetString>(get_string) };
-    // SAFETY: glGetString takes any value; without a context it returns null.
-    let version = unsafe { get_string(glow::VERSION) };
-    if version.is_null() {
-        return Err(Error::no_current_context("no OpenGL context is current on this thread"));
-    }
-    // SAFETY: it is a text that the driver keeps.
-    Ok(unsafe { CStr::from_ptr(version.cast()) })
 }
 
 unsafe fn sampler(glow: &glow::Context, minification: u32) -> Result<glow::Sampler> {

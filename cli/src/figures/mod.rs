@@ -2,11 +2,10 @@
 
 mod regions;
 
-use std::fs;
 use std::io::Write;
 use std::path::PathBuf;
 
-use anyhow::{Context as _, Result, bail};
+use anyhow::{Result, bail};
 use serde::Serialize;
 use varikernel::image::{
     Picture, Tile, check_writable, contact_sheet, picture_of, write_atomically, write_colours,
@@ -121,8 +120,7 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
             args.reference_seeds
         );
     }
-    fs::create_dir_all(&args.output)
-        .with_context(|| format!("can't make the folder {}", args.output.display()))?;
+    output::make_folder(&args.output)?;
     check_writable(&args.output.join("figures.png"))?;
     source.check_exposure()?;
     let (settings, trace) = (source.picture(), source.trace());

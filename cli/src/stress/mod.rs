@@ -3,11 +3,10 @@
 mod renderers;
 mod table;
 
-use std::fs;
 use std::path::PathBuf;
 use std::time::Duration;
 
-use anyhow::{Context as _, Result};
+use anyhow::Result;
 use varikernel::context::DeviceChoice;
 use varikernel::image::check_writable;
 use varikernel_lab::stress::{self, Extent, Report, StressSettings, Verdict};
@@ -70,7 +69,7 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
         return Ok(Outcome::Done);
     }
     let folder = &args.output;
-    fs::create_dir_all(folder).with_context(|| format!("can't make the folder {}", folder.display()))?;
+    output::make_folder(folder)?;
     let (json, csv) = (folder.join("stress.json"), folder.join("stress.csv"));
     check_writable(&json)?;
     check_writable(&csv)?;

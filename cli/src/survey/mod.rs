@@ -77,7 +77,7 @@ pub(crate) fn run(args: &Args) -> Result<Outcome> {
         bail!("--budget {:?} is not possible: give at least 30s", args.budget);
     }
     let folder = &args.output;
-    fs::create_dir_all(folder).with_context(|| format!("can't make the folder {}", folder.display()))?;
+    output::make_folder(folder)?;
     let path = folder.join(RECORD);
     let earlier = if args.resume { earlier(&path)? } else { Record::default() };
     let mut record = Record {

@@ -2,15 +2,16 @@
 
 use std::fmt;
 use std::fs::File;
-use std::io::Read as _;
 use std::path::Path;
 use std::process::{Command, Stdio};
-use std::thread;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use anyhow::{Context as _, Result};
 use serde::{Deserialize, Serialize};
 use varikernel::context::DeviceChoice;
+
+use crate::child::{reader, wait};
+use crate::output::make_folder;
 
 /// What is run, in this order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, clap::ValueEnum)]
@@ -108,7 +109,7 @@ impl Part {
 pub(super) fn run(part: Part, words: &[String], folder: &Path, limit: Duration) -> Result<End> {
     let printed = folder.join(part.printed());
     let place = printed.parent().unwrap_or(folder);
-    std::fs::create_dir_all(place).with_context(|| format!("can't make the folder {}", place.display()))?;
+    make_folder(place)?;
     let file = File::create(&printed).with_context(|| format!("can't write {}", printed.display()))?;
     let program = std::env::current_exe().context("this program can't be found: start it by its path")?;
     let mut command = Command::new(program);
@@ -117,26 +118,10 @@ pub(super) fn run(part: Part, words: &[String], folder: &Path, limit: Duration) 
         Ok(child) => child,
         Err(error) => return Ok(End::Failed { why: format!("no process for it: {error}") }),
     };
-    let mut stderr = child.stderr.take();
-    let words_of_it = thread::spawn(move || {
-        let mut bytes = Vec::new();
-        // What can't be read is missing from the message.
-        let _ = stderr.as_mut().map(|pipe| pipe.read_to_end(&mut bytes));
-        String::from_utf8_lossy(&bytes).into_owned()
-    });
-    let begun = Instant::now();
-    let status = loop {
-        if let Some(status) = child.try_wait().context("a part can't be waited for")? {
-            break Some(status);
-        }
-        if begun.elapsed() > limit {
-            child.kill().context("a part can't be ended")?;
-            child.wait().context("a part can't be waited for")?;
-            break None;
-        }
-        thread::sleep(Duration::from_millis(50));
-    };
-    let last = words_of_it.join().unwrap_or_default();
+    let stderr = reader(child.stderr.take());
+    let status = wait(&mut child, limit).context("a part can't be waited for")?;
+    let bytes = stderr.join().unwrap_or_default();
+    let last = String::from_utf8_lossy(&bytes);
     // The error, or else the last line.
     let said = last.lines().rev().find(|line| line.starts_with("error")).or_else(|| last.lines().next_back());
     let why = match status {

@@ -40,12 +40,7 @@ fn each_verb_has_a_manual_page() {
 #[test]
 fn an_unknown_shell_and_a_folder_that_is_a_file_are_refused() {
     let place = Workplace::new();
-    let refused = |arguments: &str, words: &str| {
-        let run = place.command(arguments).assert().code(2);
-        let error = String::from_utf8_lossy(&run.get_output().stderr).into_owned();
-        assert!(error.contains(words), "{error}");
-    };
-    refused("completions csh", "possible values: bash, elvish, fish, powershell, zsh");
+    place.refuses("completions csh", &["possible values: bash, elvish, fish, powershell, zsh"]);
     place.put("taken", b"a file");
-    refused("man -o taken", "taken");
+    place.refuses("man -o taken", &["taken"]);
 }

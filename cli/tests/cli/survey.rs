@@ -49,16 +49,13 @@ fn methods_are_judged_within_their_share() {
 #[test]
 fn what_cannot_be_is_refused() {
     let place = Workplace::new();
-    let refused = |arguments: &str, words: &str| {
-        let run = place.command(arguments).assert().code(2);
-        let error = String::from_utf8_lossy(&run.get_output().stderr).into_owned();
-        assert!(error.contains(words), "{error}");
-    };
-    refused("survey --budget 5s", "at least 30s");
-    refused("survey --parts gpu", "possible values: devices, stress, methods, fast, picture, reproduction");
+    place.refuses("survey --budget 5s", &["at least 30s"]);
+    place.refuses(
+        "survey --parts gpu",
+        &["possible values: devices, stress, methods, fast, picture, reproduction"],
+    );
     place.put("taken", b"a file");
-    refused("survey -o taken", "taken");
-    fs::create_dir(place.folder.path().join("old")).unwrap();
-    place.put("old/survey.json", b"{");
-    refused("survey -o old --resume", "leave --resume out");
+    place.refuses("survey -o taken", &["taken"]);
+    place.put("survey.json", b"{");
+    place.refuses("survey -o . --resume", &["leave --resume out"]);
 }

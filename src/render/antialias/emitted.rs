@@ -11,8 +11,8 @@ const MOST: u32 = 1 << 11;
 const TOLERANCE: f32 = 0.0025;
 
 /// Samples of one pixel's emitted light, each with its place from the pixel's corner: those that are there,
-/// and more by their numbers until they are enough. `beside` is the darkest and the brightest that the middles
-/// of this pixel and of those around emit, which a small part of this one may do as well; `usual` is the
+/// and more by their numbers until they are enough. `beside` is the least and the most that the middles of
+/// this pixel and of those around emit in each colour, which a small part of this one may do as well; `usual` is the
 /// picture's usual light.
 pub(super) fn emitted(
     found: Vec<(DVec2, Vec3)>,
